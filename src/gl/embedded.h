@@ -1,0 +1,14 @@
+/* The .glsl files of src/, embedded by the build (cmake/embed_shaders.cmake). */
+#ifndef PENUMBRA_GL_EMBEDDED_H
+#define PENUMBRA_GL_EMBEDDED_H
+
+typedef struct {
+  const char *path; /* relative to src/, for example "techniques/hard/hard.glsl" */
+  const char *text; /* the file's bytes, zero-terminated; #include lines are not resolved */
+} pn_embedded_shader;
+
+/* Sorted by path; one more entry of two NULLs follows the last. */
+extern const pn_embedded_shader pn_embedded_shaders[];
+extern const int pn_embedded_shader_count;
+
+#endif
