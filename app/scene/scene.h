@@ -1,0 +1,111 @@
+/* scene.h: what is drawn, in plain memory, independent of GL: triangles, where they stand, the light, the camera.
+ *
+ *     scene_load      a model file (scene/import.c) or builtin:NAME (scene/builtin.c), with its standard set-up
+ *     scene_free
+ *
+ * Scene space is right-handed, Y up; matrices are column-major and map column vectors. */
+#ifndef PENUMBRA_APP_SCENE_H
+#define PENUMBRA_APP_SCENE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "penumbra/penumbra.h"
+
+/* An alpha texture: one byte a texel, row 0 at v = 0 (the bottom), as OpenGL wants it. Sampled bilinearly from this one
+ * level, so that a ray tracer and the GPU see the same holes: texture_alpha is the definition. */
+enum texture_wrap { WRAP_REPEAT = 0, WRAP_CLAMP, WRAP_MIRROR };
+struct texture {
+  int width, height;
+  uint8_t *alpha;
+  enum texture_wrap wrap_u, wrap_v;
+};
+
+/* Triangles in object space. Coordinates are finite and every triangle has an area. */
+struct mesh {
+  float *positions; /* 3 a vertex */
+  float *texcoords; /* 2 a vertex; NULL unless texture >= 0 */
+  uint32_t *indices; /* 3 a triangle */
+  uint32_t vertex_count, triangle_count;
+  int texture;  /* index into scene.textures; -1: opaque */
+  float cutoff; /* texels with alpha >= cutoff block light, the others are holes */
+  float bounds_min[3], bounds_max[3]; /* object space */
+};
+
+/* A mesh that stands somewhere. A pure receiver (casts = 0) is not given to the library. */
+struct instance {
+  int mesh;
+  float scene_from_object[16]; /* affine and finite; may mirror */
+  int casts, receives;
+};
+
+struct light {
+  pn_light_shape shape;
+  double center[3], target[3], up[3]; /* what options set; a sun shines along center to target */
+  double size[2];                     /* full widths in scene units; sun: full angles in degrees */
+  /* Derived by setup_finish: */
+  double direction[3], u[3], v[3]; /* unit */
+  double half[2];                  /* half extents in scene units; sun: tangents of the angular radii */
+};
+
+struct camera {
+  double position[3], target[3], up[3];
+  double fov; /* vertical, degrees */
+};
+
+/* Everything else that makes two runs the same picture. */
+struct setup {
+  struct light light;
+  struct camera camera;
+  int size[2]; /* pixels */
+  int map[2];  /* depth-map texels; the library's default when 0 */
+  int split;   /* the model only casts, the ground only receives */
+  int visibility_scale;
+  pn_fit fit;
+  double fit_bounds[6];
+};
+
+struct scene {
+  char *name; /* "bunny", "builtin:boxes" */
+  struct mesh *meshes;
+  struct instance *instances;
+  struct texture *textures;
+  int mesh_count, instance_count, texture_count;
+  float bounds_min[3], bounds_max[3]; /* scene space, of what casts, or of everything when nothing does: B and H of the standard set-up */
+  uint64_t triangle_count;            /* over instances, the ground included */
+  struct setup setup;
+};
+
+/* What scene_load is told beside the name. Zeroed: the defaults. */
+enum ground { GROUND_DEFAULT = 0, GROUND_ON, GROUND_OFF };
+struct scene_request {
+  const char *name; /* a file, or builtin:NAME or builtin:NAME=N */
+  int up_is_z;
+  enum ground ground; /* default: on for files, off for built-in scenes, which bring their own floor */
+  int split;
+};
+
+/* Loads or builds the scene with its ground, its standard set-up (contract: B and H) applied. On failure *out is NULL, one line was
+ * printed, and the exit status is returned. Must be called before any thread or GL context exists: the import forks. */
+int scene_load(const struct scene_request *request, struct scene **out);
+void scene_free(struct scene **scene); /* clears the handle; NULL and a NULL handle are fine */
+
+/* Largest extent of the bounds: H. */
+double scene_extent(const struct scene *scene);
+
+/* Derives light.direction, u, v and half, checks light and camera, and warns where the light cannot light the scene. Call it after options
+ * have changed the set-up. Returns the exit status. */
+int setup_finish(struct scene *scene);
+
+/* The four corners of a rectangle in scene space; of a sun, the four directions towards its corners (unit length not kept). */
+void light_corners(const struct light *light, double corners[4][3]);
+
+/* Alpha at (u, v) in [0, 1]: bilinear, wrapped as the texture says. A hole is where this is below the mesh's cutoff. */
+float texture_alpha(const struct texture *texture, float u, float v);
+
+/* Adding to a scene under construction (importer, built-ins). Arrays are malloc'ed and taken over; both return the index or -1 when memory ran
+ * out (the arrays are then freed). mesh->bounds_* are computed here. */
+int scene_add_mesh(struct scene *scene, struct mesh *mesh);
+int scene_add_instance(struct scene *scene, int mesh, const float scene_from_object[16], int casts, int receives);
+
+#endif
