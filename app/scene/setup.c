@@ -1,0 +1,110 @@
+#include <math.h>
+#include <string.h>
+
+#include "message.h"
+#include "scene_parts.h"
+#include "vector.h"
+
+static const double pi = 3.14159265358979323846;
+
+static void set3(double out[3], double x, double y, double z) {
+  out[0] = x;
+  out[1] = y;
+  out[2] = z;
+}
+
+void setup_standard(struct scene *scene) {
+  double h = scene_extent(scene), b[3];
+  b[0] = 0.5 * ((double)scene->bounds_min[0] + scene->bounds_max[0]);
+  b[1] = scene->bounds_min[1];
+  b[2] = 0.5 * ((double)scene->bounds_min[2] + scene->bounds_max[2]);
+  struct setup *setup = &scene->setup;
+  struct light *light = &setup->light;
+  light->shape = PN_LIGHT_RECTANGLE;
+  set3(light->center, b[0], b[1] + 3 * h, b[2]);
+  set3(light->target, b[0], b[1], b[2]);
+  set3(light->up, 0, 0, -1);
+  light->size[0] = light->size[1] = h;
+  struct camera *camera = &setup->camera;
+  set3(camera->position, b[0], b[1] + 1.8 * h, b[2] + 2.6 * h);
+  set3(camera->target, b[0], b[1] + 0.38 * h, b[2]);
+  set3(camera->up, 0, 1, 0);
+  camera->fov = 48.5;
+  setup->size[0] = 1024;
+  setup->size[1] = 768;
+  setup->map[0] = setup->map[1] = 512;
+  setup->visibility_scale = 1;
+  setup->fit = PN_FIT_VISIBLE;
+}
+
+/* As the light's frame: where up is parallel to the view direction, another axis takes its place. */
+static int camera_check(const struct camera *camera) {
+  double view[3], side[3];
+  v3_sub(camera->target, camera->position, view);
+  if (!(v3_normalize(view) > 0)) return input_error("--camera-target is the camera's own position: the two must differ");
+  v3_cross(view, camera->up, side);
+  if (!(v3_length(camera->up) > 0)) return input_error("--camera-up is zero: give a direction, such as 0,1,0");
+  return STATUS_OK;
+}
+
+static int light_derive(struct light *light) {
+  double d[3];
+  v3_sub(light->target, light->center, d);
+  if (!(v3_normalize(d) > 0)) return input_error("--light-target is the light's own centre: the two must differ");
+  if (!(v3_length(light->up) > 0)) return input_error("--light-up is zero: give a direction, such as 0,0,-1");
+  /* The library's own frame, so that program and library mean the same u and v; unit length regained in double. */
+  float direction[3], up[3], out[3], u[3], v[3];
+  double unit_up[3];
+  memcpy(unit_up, light->up, sizeof unit_up);
+  v3_normalize(unit_up);
+  for (int i = 0; i < 3; i++) {
+    direction[i] = (float)d[i];
+    up[i] = (float)unit_up[i];
+  }
+  if (pn_light_frame(direction, up, out, u, v) != PN_OK) return input_error("the light's direction is not usable");
+  for (int i = 0; i < 3; i++) {
+    light->direction[i] = d[i];
+    light->u[i] = u[i];
+  }
+  v3_add_scaled(light->u, -v3_dot(light->u, d), d, light->u);
+  v3_normalize(light->u);
+  v3_cross(light->u, light->direction, light->v);
+  for (int i = 0; i < 2; i++)
+    light->half[i] = light->shape == PN_LIGHT_SUN ? tan(light->size[i] * pi / 360) : 0.5 * light->size[i];
+  return STATUS_OK;
+}
+
+static void warn_about_light(const struct scene *scene) {
+  const struct light *light = &scene->setup.light;
+  if (light->shape == PN_LIGHT_SUN) return;
+  int inside = 1, in_front = 0;
+  for (int k = 0; k < 3; k++)
+    inside &= light->center[k] > scene->bounds_min[k] && light->center[k] < scene->bounds_max[k];
+  for (int i = 0; i < 8; i++) {
+    double d[3];
+    for (int k = 0; k < 3; k++) d[k] = (i >> k & 1 ? scene->bounds_max[k] : scene->bounds_min[k]) - light->center[k];
+    in_front |= v3_dot(d, light->direction) > 0;
+  }
+  if (!in_front) warning("the whole model lies behind the light, which shines away from it: nothing casts a shadow");
+  else if (inside) warning("the light's centre lies inside the model's bounds: what is behind the light casts no shadow");
+}
+
+int setup_finish(struct scene *scene) {
+  struct setup *setup = &scene->setup;
+  int status = camera_check(&setup->camera);
+  if (!status) status = light_derive(&setup->light);
+  if (status) return status;
+  warn_about_light(scene);
+  return STATUS_OK;
+}
+
+void light_corners(const struct light *light, double corners[4][3]) {
+  for (int i = 0; i < 4; i++) {
+    double a = (i == 0 || i == 3 ? -1 : 1) * light->half[0], b = (i < 2 ? -1 : 1) * light->half[1];
+    for (int k = 0; k < 3; k++) {
+      /* A sun's direction towards its corner: against the way it shines, tilted by the tangents. */
+      double base = light->shape == PN_LIGHT_SUN ? -light->direction[k] : light->center[k];
+      corners[i][k] = base + a * light->u[k] + b * light->v[k];
+    }
+  }
+}
