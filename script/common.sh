@@ -19,6 +19,6 @@ configure() {
 
 # build PRESET
 build() {
-  # --quiet: ninja shows warnings and errors, and nothing else.
-  cmake --build --preset "$1" -- --quiet
+  # What is left is warnings and errors.
+  cmake --build --preset "$1" -- --quiet 2>&1 | sed '/^ninja: no work to do.$/d'
 }
