@@ -141,7 +141,7 @@ static enum reference_status add_instance(struct occluders *occluders, const str
     return REFERENCE_MEMORY;
   }
   float magnitude = place_vertices(mesh, matrix, placed);
-  /* A dropped triangle becomes a point: Embree leaves those out, and the numbers of the others stay. */
+  /* A dropped triangle becomes a point, which no ray hits, and the numbers of the others stay. */
   for (size_t i = 0; i < mesh->triangle_count; i++) {
     int usable = triangle_usable(mesh->indices + 3 * i, placed, mesh->vertex_count);
     for (int corner = 0; corner < 3; corner++)

@@ -183,7 +183,7 @@ static void *worker(void *argument) {
 
 static struct timespec after(double seconds) {
   struct timespec until;
-  clock_gettime(CLOCK_REALTIME, &until);
+  clock_gettime(CLOCK_MONOTONIC, &until);
   until.tv_nsec += (long)(seconds * 1e9);
   until.tv_sec += until.tv_nsec / 1000000000;
   until.tv_nsec %= 1000000000;
@@ -210,8 +210,12 @@ static void watch(struct work *work, const struct reference_options *options) {
 static enum reference_status run_workers(struct work *work, const struct reference_options *options, int threads) {
   pthread_t ids[REFERENCE_THREADS_MAX];
   int started = 0;
+  pthread_condattr_t attributes;
+  pthread_condattr_init(&attributes);
+  pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC); /* so that setting the clock does not delay a Ctrl-C */
   pthread_mutex_init(&work->lock, NULL);
-  pthread_cond_init(&work->changed, NULL);
+  pthread_cond_init(&work->changed, &attributes);
+  pthread_condattr_destroy(&attributes);
   work->running = threads;
   while (started < threads && pthread_create(&ids[started], NULL, worker, work) == 0)
     started++;

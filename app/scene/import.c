@@ -1,0 +1,205 @@
+#define _GNU_SOURCE /* pipe2 */
+#include "import.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "image.h"
+#include "interrupt.h"
+#include "message.h"
+#include "scene_parts.h"
+
+/* What an import may take. A binary STL has 50 bytes a triangle and no format that people use has fewer than 16, so the memory allows the
+ * 1 KB a triangle that importing is meant to stay under; the time is many times what the slowest text format was seen to need. */
+enum { IMPORT_SECONDS = 20, IMPORT_SECONDS_PER_16_MB = 20, IMPORT_MB = 1024, IMPORT_BYTES_PER_BYTE = 64 };
+
+static unsigned import_seconds(off_t size) {
+  double seconds = IMPORT_SECONDS + (double)size / (16 << 20) * IMPORT_SECONDS_PER_16_MB;
+  return seconds > 3600 ? 3600 : (unsigned)seconds;
+}
+
+static void limit_child(off_t size) {
+  struct rlimit cpu = {import_seconds(size), import_seconds(size) + 1};
+  setrlimit(RLIMIT_CPU, &cpu);
+  struct rlimit core = {0, 0};
+  setrlimit(RLIMIT_CORE, &core);
+#if !defined(__SANITIZE_ADDRESS__) /* a sanitizer's shadow memory alone is beyond any limit */
+  rlim_t bytes = ((rlim_t)IMPORT_MB << 20) + (rlim_t)size * IMPORT_BYTES_PER_BYTE;
+  struct rlimit memory = {bytes, bytes};
+  setrlimit(RLIMIT_DATA, &memory);
+#endif
+}
+
+static int check_file(const char *path, struct stat *info) {
+  if (stat(path, info) != 0) return input_error("%s: %s", path, strerror(errno));
+  if (S_ISDIR(info->st_mode)) return input_error("%s: is a directory, not a model file", path);
+  if (!S_ISREG(info->st_mode)) return input_error("%s: is not a regular file", path);
+  if (info->st_size == 0) return input_error("%s: the file is empty", path);
+  if (access(path, R_OK) != 0) return input_error("%s: %s", path, strerror(errno));
+  return STATUS_OK;
+}
+
+/* Starts the import; its records come out of the returned descriptor. -1: no process or pipe. */
+static int start_child(const char *path, int up_is_z, off_t size, pid_t *child) {
+  int pipes[2];
+  if (pipe2(pipes, O_CLOEXEC) != 0) return -1;
+  fflush(NULL);
+  pid_t parent = getpid();
+  *child = fork();
+  if (*child < 0) {
+    close(pipes[0]);
+    close(pipes[1]);
+    return -1;
+  }
+  if (*child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(1);
+    signal(SIGINT, SIG_IGN); /* the parent speaks for both, and ends this process */
+    signal(SIGTERM, SIG_DFL);
+    signal(SIGHUP, SIG_DFL);
+    int nowhere = open("/dev/null", O_RDWR);
+    dup2(nowhere, STDOUT_FILENO);
+    dup2(nowhere, STDERR_FILENO);
+    close(pipes[0]);
+    limit_child(size);
+    import_child(path, up_is_z, pipes[1]);
+    _exit(0);
+  }
+  close(pipes[1]);
+  return pipes[0];
+}
+
+/* 0: all size bytes; -1: the pipe ended. */
+static int read_all(int fd, void *bytes, size_t size) {
+  for (size_t done = 0; done < size;) {
+    ssize_t n = read(fd, (char *)bytes + done, size - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return -1;
+    done += (size_t)n;
+  }
+  return 0;
+}
+
+static void *read_array(int fd, size_t count, size_t element) {
+  void *array = count <= SIZE_MAX / element ? malloc(count * element + 1) : NULL;
+  if (array && read_all(fd, array, count * element)) {
+    free(array);
+    return NULL;
+  }
+  return array;
+}
+
+enum received { RECEIVED_MORE, RECEIVED_END, RECEIVED_ERROR, RECEIVED_BROKEN };
+
+static enum received receive_mesh(int fd, const struct record *r, struct scene *scene) {
+  struct mesh mesh = {.vertex_count = r->vertex_count, .triangle_count = r->triangle_count, .texture = r->texture, .cutoff = r->cutoff};
+  if (r->texture >= scene->texture_count || r->triangle_count > UINT32_MAX / 3) return RECEIVED_BROKEN;
+  mesh.positions = read_array(fd, r->vertex_count, 3 * sizeof(float));
+  if (mesh.positions && r->texture >= 0) mesh.texcoords = read_array(fd, r->vertex_count, 2 * sizeof(float));
+  if (mesh.positions && (r->texture < 0 || mesh.texcoords)) mesh.indices = read_array(fd, r->triangle_count, 3 * sizeof(uint32_t));
+  int broken = !mesh.indices;
+  for (size_t i = 0; !broken && i < 3 * (size_t)mesh.triangle_count; i++) broken = mesh.indices[i] >= mesh.vertex_count;
+  if (broken) {
+    mesh_free(&mesh);
+    return RECEIVED_BROKEN;
+  }
+  return scene_add_mesh(scene, &mesh) < 0 ? RECEIVED_BROKEN : RECEIVED_MORE;
+}
+
+static enum received receive_texture(int fd, const struct record *r, struct scene *scene) {
+  if (r->width < 1 || r->height < 1 || r->width > IMAGE_SIZE_MAX || r->height > IMAGE_SIZE_MAX) return RECEIVED_BROKEN;
+  struct texture texture = {.width = r->width, .height = r->height, .wrap_u = r->wrap_u, .wrap_v = r->wrap_v};
+  texture.alpha = read_array(fd, (size_t)r->width, (size_t)r->height);
+  return !texture.alpha || scene_add_texture(scene, &texture) < 0 ? RECEIVED_BROKEN : RECEIVED_MORE;
+}
+
+static enum received receive_text(int fd, const struct record *r, const char *path) {
+  char text[512];
+  if (r->text_size >= sizeof text || read_all(fd, text, r->text_size)) return RECEIVED_BROKEN;
+  text[r->text_size] = 0;
+  if (r->tag == RECORD_ERROR) {
+    input_error("%s: %s", path, text);
+    return RECEIVED_ERROR;
+  }
+  warning("%s: %s", path, text);
+  return RECEIVED_MORE;
+}
+
+static enum received receive(int fd, const char *path, struct scene *scene) {
+  struct record r;
+  if (read_all(fd, &r, sizeof r)) return RECEIVED_BROKEN;
+  switch (r.tag) {
+    case RECORD_MESH: return receive_mesh(fd, &r, scene);
+    case RECORD_TEXTURE: return receive_texture(fd, &r, scene);
+    case RECORD_INSTANCE:
+      if (r.mesh < 0 || r.mesh >= scene->mesh_count) return RECEIVED_BROKEN;
+      return scene_add_instance(scene, r.mesh, r.scene_from_object, 1, 1) < 0 ? RECEIVED_BROKEN : RECEIVED_MORE;
+    case RECORD_WARNING:
+    case RECORD_ERROR: return receive_text(fd, &r, path);
+    case RECORD_END: return RECEIVED_END;
+    default: return RECEIVED_BROKEN;
+  }
+}
+
+/* How a child that sent neither an end nor an error came to its own. */
+static int explain_death(const char *path, int wait_status, off_t size) {
+  if (WIFSIGNALED(wait_status)) {
+    int number = WTERMSIG(wait_status);
+    if (number == SIGXCPU || number == SIGKILL)
+      return input_error("%s: importing took more than %u s, which is too long for a file of its size; it is probably damaged", path,
+                         import_seconds(size));
+    return input_error("%s: the importer crashed on it (%s); the file is probably damaged", path, strsignal(number));
+  }
+  return input_error("%s: the importer gave up on it; the file is probably damaged or far too large", path);
+}
+
+/* "dir/bunny.obj" is "bunny". */
+static struct scene *scene_named_after(const char *path) {
+  const char *slash = strrchr(path, '/');
+  struct scene *scene = scene_new(slash ? slash + 1 : path);
+  if (!scene) return NULL;
+  char *dot = strrchr(scene->name, '.');
+  if (dot && dot != scene->name) *dot = 0;
+  return scene;
+}
+
+int import_model(const char *path, int up_is_z, struct scene **out) {
+  *out = NULL;
+  struct stat info;
+  int status = check_file(path, &info);
+  if (status) return status;
+  struct scene *scene = scene_named_after(path);
+  if (!scene) return memory_error();
+  pid_t child = 0;
+  int fd = start_child(path, up_is_z, info.st_size, &child);
+  if (fd < 0) {
+    scene_free(&scene);
+    return work_error("cannot start the importer: %s", strerror(errno));
+  }
+  interrupt_watch_child(child);
+  enum received last;
+  do last = receive(fd, path, scene);
+  while (last == RECEIVED_MORE);
+  close(fd);
+  if (last != RECEIVED_BROKEN) kill(child, SIGKILL); /* it has nothing left to say; freeing what it holds takes time */
+  int wait_status = 0;
+  while (waitpid(child, &wait_status, 0) < 0 && errno == EINTR) {}
+  interrupt_watch_child(0);
+  if (last == RECEIVED_END) {
+    *out = scene;
+    return STATUS_OK;
+  }
+  scene_free(&scene);
+  return last == RECEIVED_ERROR ? STATUS_INPUT : explain_death(path, wait_status, info.st_size);
+}

@@ -1,0 +1,160 @@
+#include "import_child.h"
+
+#include <assimp/cimport.h>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MESH_NOT_SENT = -2, MESH_EMPTY = -1, NODE_DEPTH_MAX = 4096 };
+struct sent_mesh {
+  int number; /* in the scene */
+};
+
+void send_bytes(int fd, const void *bytes, size_t size) {
+  for (size_t done = 0; done < size;) {
+    ssize_t n = write(fd, (const char *)bytes + done, size - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) _exit(1);
+    done += (size_t)n;
+  }
+}
+
+void send_text(int fd, enum record_tag tag, const char *format, ...) {
+  char text[400];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  struct record r = {.tag = tag, .text_size = (uint32_t)strlen(text)};
+  send_bytes(fd, &r, sizeof r);
+  send_bytes(fd, text, r.text_size);
+}
+
+static const struct aiScene *read_model(const char *path) {
+  struct aiPropertyStore *settings = aiCreatePropertyStore();
+  aiSetImportPropertyInteger(settings, AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  aiSetImportPropertyInteger(settings, AI_CONFIG_PP_RVC_FLAGS,
+                             aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
+                                 aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS | aiComponent_LIGHTS | aiComponent_CAMERAS);
+  aiSetImportPropertyInteger(settings, AI_CONFIG_FAVOUR_SPEED, 1);
+  unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent | aiProcess_TransformUVCoords;
+  const struct aiScene *model = aiImportFileExWithProperties(path, steps, NULL, settings);
+  aiReleasePropertyStore(settings);
+  return model;
+}
+
+/* Assimp's matrices are row-major. --up z turns the file's z to y, and its y to -z. Returns 0 where it is not a finite affine matrix. */
+static int to_columns(const struct aiMatrix4x4 *m, int up_is_z, float out[16]) {
+  const float rows[3][4] = {{m->a1, m->a2, m->a3, m->a4}, {m->b1, m->b2, m->b3, m->b4}, {m->c1, m->c2, m->c3, m->c4}};
+  for (int column = 0; column < 4; column++) {
+    out[4 * column + 0] = rows[0][column];
+    out[4 * column + 1] = up_is_z ? rows[2][column] : rows[1][column];
+    out[4 * column + 2] = up_is_z ? -rows[1][column] : rows[2][column];
+    out[4 * column + 3] = column == 3;
+  }
+  for (int i = 0; i < 16; i++)
+    if (!isfinite(out[i]) || fabsf(out[i]) > 1e15f) return 0;
+  return m->d1 == 0 && m->d2 == 0 && m->d3 == 0 && m->d4 == 1;
+}
+
+/* A transform that flattens everything leaves no area to block light with. */
+static int flattens(const float m[16]) {
+  double x = 0, y = 0, z = 0;
+  for (int i = 0; i < 3; i++) {
+    x += (double)m[i] * m[i];
+    y += (double)m[4 + i] * m[4 + i];
+    z += (double)m[8 + i] * m[8 + i];
+  }
+  return (x == 0) + (y == 0) + (z == 0) > 1;
+}
+
+static void send_instance(struct importer *importer, unsigned mesh_index, const struct aiMatrix4x4 *transform, int up_is_z) {
+  if (mesh_index >= importer->model->mNumMeshes) return;
+  struct record r = {.tag = RECORD_INSTANCE};
+  if (!to_columns(transform, up_is_z, r.scene_from_object) || flattens(r.scene_from_object)) {
+    importer->dropped_instances++;
+    return;
+  }
+  const struct aiMesh *mesh = importer->model->mMeshes[mesh_index];
+  struct sent_mesh *sent = &importer->sent[mesh_index];
+  if (sent->number == MESH_NOT_SENT) {
+    static const struct material_alpha opaque = {.texture = -1};
+    int known = importer->alphas && mesh->mMaterialIndex < importer->model->mNumMaterials;
+    sent->number = send_mesh(importer, mesh, known ? &importer->alphas[mesh->mMaterialIndex] : &opaque);
+  }
+  if (sent->number == MESH_EMPTY) return;
+  r.mesh = sent->number;
+  send_bytes(importer->fd, &r, sizeof r);
+  importer->instance_count++;
+}
+
+static void send_node(struct importer *importer, const struct aiNode *node, struct aiMatrix4x4 parent, int up_is_z, int depth) {
+  if (depth > NODE_DEPTH_MAX) return;
+  struct aiMatrix4x4 transform = parent;
+  aiMultiplyMatrix4(&transform, &node->mTransformation);
+  for (unsigned i = 0; i < node->mNumMeshes; i++) send_instance(importer, node->mMeshes[i], &transform, up_is_z);
+  for (unsigned i = 0; i < node->mNumChildren; i++)
+    if (node->mChildren[i]) send_node(importer, node->mChildren[i], transform, up_is_z, depth + 1);
+}
+
+/* One warning for everything that was left out. */
+static void send_counts(const struct importer *importer) {
+  char text[300] = "";
+  const struct {
+    uint64_t count;
+    const char *what;
+  } rows[] = {{importer->dropped_nan, "with coordinates that are not finite"},
+              {importer->dropped_area, "without area"},
+              {importer->dropped_index, "with corners that do not exist"}};
+  for (int i = 0; i < 3; i++)
+    if (rows[i].count)
+      snprintf(text + strlen(text), sizeof text - strlen(text), "%s%llu %s %s", *text ? ", " : "dropped ",
+               (unsigned long long)rows[i].count, rows[i].count == 1 ? "triangle" : "triangles", rows[i].what);
+  if (importer->dropped_instances)
+    snprintf(text + strlen(text), sizeof text - strlen(text), "%s%llu placed with unusable transforms", *text ? ", " : "dropped meshes: ",
+             (unsigned long long)importer->dropped_instances);
+  if (*text) send_text(importer->fd, RECORD_WARNING, "%s", text);
+}
+
+/* The importer's own words, without line ends. */
+static void send_import_error(int fd) {
+  const char *text = aiGetErrorString();
+  if (!text || !*text) text = "no importer can read it";
+  char line[300];
+  size_t length = 0;
+  for (; *text && length < sizeof line - 1; text++)
+    if (!(*text == '\n' || *text == '\r') || (length && line[length - 1] != ' ')) line[length++] = *text == '\n' || *text == '\r' ? ' ' : *text;
+  while (length && line[length - 1] == ' ') length--;
+  line[length] = 0;
+  send_text(fd, RECORD_ERROR, "cannot be imported: %s", line);
+}
+
+void import_child(const char *path, int up_is_z, int fd) {
+  struct importer importer = {.fd = fd, .path = path};
+  importer.model = read_model(path);
+  if (!importer.model || !importer.model->mRootNode) {
+    send_import_error(fd);
+    return;
+  }
+  unsigned count = importer.model->mNumMeshes;
+  importer.sent = malloc((count + 1) * sizeof *importer.sent);
+  if (!importer.sent) return;
+  for (unsigned i = 0; i < count; i++) importer.sent[i].number = MESH_NOT_SENT;
+  send_materials(&importer);
+  struct aiMatrix4x4 identity;
+  aiIdentityMatrix4(&identity);
+  send_node(&importer, importer.model->mRootNode, identity, up_is_z, 0);
+  send_counts(&importer);
+  if (importer.instance_count == 0) {
+    send_text(fd, RECORD_ERROR, "holds no usable triangles; a model needs triangles or polygons");
+    return;
+  }
+  struct record end = {.tag = RECORD_END};
+  send_bytes(fd, &end, sizeof end);
+}
