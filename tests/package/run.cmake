@@ -1,9 +1,17 @@
 # Installs into a tree, moves it, and builds the consumer against it in four ways.
 set(root "${WORK}/moved")
+# Quiet unless it fails.
+function(run)
+  execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "${command}\n${output}")
+  endif()
+endfunction()
+
 file(REMOVE_RECURSE "${WORK}")
 file(MAKE_DIRECTORY "${WORK}")
-execute_process(COMMAND "${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/installed" OUTPUT_QUIET
-                COMMAND_ERROR_IS_FATAL ANY)
+run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/installed")
 file(RENAME "${WORK}/installed" "${root}") # the package files name no place of their own
 
 function(run_consumer program)
@@ -15,15 +23,15 @@ function(run_consumer program)
   # What a static consumer must not need, a shared one must.
   execute_process(COMMAND ldd "${program}" OUTPUT_VARIABLE libraries COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX MATCH "libpenumbra\\.so\\.[0-9.]+" needed "${libraries}")
-  if(program MATCHES "shared" AND NOT needed OR program MATCHES "static" AND needed)
+  get_filename_component(name "${program}" NAME)
+  if(name MATCHES "shared" AND NOT needed OR name MATCHES "static" AND needed)
     message(FATAL_ERROR "${program} loads '${needed}'")
   endif()
 endfunction()
 
-execute_process(COMMAND "${CMAKE_COMMAND}" -S "${CONSUMER}" -B "${WORK}/cmake" -G "${GENERATOR}" "-DCMAKE_C_COMPILER=${CC}"
-                        "-DCMAKE_PREFIX_PATH=${root}" "-DWANTED_VERSION=${VERSION}" -DCMAKE_BUILD_TYPE=Debug
-                OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND "${CMAKE_COMMAND}" --build "${WORK}/cmake" OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+run("${CMAKE_COMMAND}" -S "${CONSUMER}" -B "${WORK}/cmake" -G "${GENERATOR}" "-DCMAKE_C_COMPILER=${CC}"
+    "-DCMAKE_PREFIX_PATH=${root}" "-DWANTED_VERSION=${VERSION}" -DCMAKE_BUILD_TYPE=Debug)
+run("${CMAKE_COMMAND}" --build "${WORK}/cmake")
 run_consumer("${WORK}/cmake/shared")
 run_consumer("${WORK}/cmake/static")
 
@@ -40,7 +48,6 @@ foreach(kind IN ITEMS shared static)
     # pkg-config cannot choose between the two files of -lpenumbra; naming the archive does.
     list(TRANSFORM flags REPLACE "^-lpenumbra$" "-l:libpenumbra.a")
   endif()
-  execute_process(COMMAND "${CC}" -std=c99 "${CONSUMER}/main.c" ${flags} -o "${WORK}/pkg-config-${kind}"
-                  COMMAND_ERROR_IS_FATAL ANY)
+  run("${CC}" -std=c99 "${CONSUMER}/main.c" ${flags} -o "${WORK}/pkg-config-${kind}")
   run_consumer("${WORK}/pkg-config-${kind}")
 endforeach()
