@@ -39,5 +39,7 @@ install(FILES "${PROJECT_BINARY_DIR}/penumbra.pc" DESTINATION "${CMAKE_INSTALL_L
 if(TARGET penumbra_program)
   install(TARGETS penumbra_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 endif()
-install(FILES docs/penumbra.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" OPTIONAL)
+if(EXISTS "${PROJECT_SOURCE_DIR}/docs/penumbra.1")
+  install(FILES docs/penumbra.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+endif()
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" OPTIONAL)
