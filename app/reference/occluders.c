@@ -76,14 +76,26 @@ static float sample_alpha(const struct reference_alpha *alpha, float s, float t)
   return (value[0] * (1 - weight_t) + value[1] * weight_t) * (1 / 255.0f);
 }
 
+/* A packet of N hits is N values of each field, one field after the other: Ng_x, Ng_y, Ng_z, u, v, primID. Embree has functions for that
+ * in C++ only. */
+static float hit_u(const struct RTCFilterFunctionNArguments *arguments, unsigned i) {
+  return ((const float *)arguments->hit)[3 * arguments->N + i];
+}
+static float hit_v(const struct RTCFilterFunctionNArguments *arguments, unsigned i) {
+  return ((const float *)arguments->hit)[4 * arguments->N + i];
+}
+static size_t hit_triangle(const struct RTCFilterFunctionNArguments *arguments, unsigned i) {
+  return ((const unsigned *)arguments->hit)[5 * arguments->N + i];
+}
+
 /* Called for each hit that would block: takes back those that fall into a hole. */
 static void drop_holes(const struct RTCFilterFunctionNArguments *arguments) {
   const struct holes *holes = arguments->geometryUserPtr;
   for (unsigned i = 0; i < arguments->N; i++) {
     if (arguments->valid[i] != -1)
       continue;
-    const uint32_t *triangle = holes->indices + 3 * (size_t)RTCHitN_primID(arguments->hit, arguments->N, i);
-    float u = RTCHitN_u(arguments->hit, arguments->N, i), v = RTCHitN_v(arguments->hit, arguments->N, i), st[2];
+    const uint32_t *triangle = holes->indices + 3 * hit_triangle(arguments, i);
+    float u = hit_u(arguments, i), v = hit_v(arguments, i), st[2];
     for (int axis = 0; axis < 2; axis++)
       st[axis] = holes->texcoords[2 * (size_t)triangle[0] + axis] * (1 - u - v) +
                  holes->texcoords[2 * (size_t)triangle[1] + axis] * u + holes->texcoords[2 * (size_t)triangle[2] + axis] * v;

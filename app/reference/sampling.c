@@ -155,21 +155,23 @@ void sampling_begin(const struct sampling *sampling, uint32_t pixel, struct samp
   }
 }
 
-static void net_packet(const uint32_t *first, const uint32_t *second, const uint32_t seed[2], float *x, float *y) {
+WIDE_VECTORS static void net_packet(const uint32_t *first, const uint32_t *second, const uint32_t seed[2], float *x, float *y) {
   for (int i = 0; i < SAMPLING_LANES; i++)
     x[i] = signed_unit(reverse_bits(scramble_reversed(first[i], seed[0])));
   for (int i = 0; i < SAMPLING_LANES; i++)
     y[i] = signed_unit(reverse_bits(scramble_reversed(second[i], seed[1])));
 }
 
+/* In (0, 1), so far from the ends that rounding cannot carry a point into the next sub-cell. */
+static inline float jitter(uint32_t bits) { return (float)(bits >> 8) * (0x1p-24f * (1 - 0x1p-6f)) + 0x1p-7f; }
+
 /* Kensler 2013: in its cell (column, row) a point takes the sub-column that the row has drawn and the sub-row that the column has. */
 static void grid_point(const struct sampling *sampling, const struct sampling_pixel *state, int index, float *x, float *y) {
   uint32_t column = sampling->first[index], row = sampling->second[index];
   float side = (float)sampling->side;
-  float jitter_x = (float)(mix(state->seed[0] ^ (uint32_t)index) >> 8) * 0x1p-24f;
-  float jitter_y = (float)(mix(state->seed[1] ^ (uint32_t)index) >> 8) * 0x1p-24f;
-  *x = 2 * ((float)column + ((float)state->column[row] + jitter_x) / side) / side - 1;
-  *y = 2 * ((float)row + ((float)state->row[column] + jitter_y) / side) / side - 1;
+  float jitter_x = jitter(mix(state->seed[0] ^ (uint32_t)index)), jitter_y = jitter(mix(state->seed[1] ^ (uint32_t)index));
+  *x = 2 * (((float)(column * (uint32_t)sampling->side + state->column[row]) + jitter_x) / (side * side)) - 1;
+  *y = 2 * (((float)(row * (uint32_t)sampling->side + state->row[column]) + jitter_y) / (side * side)) - 1;
 }
 
 int sampling_packet(const struct sampling *sampling, const struct sampling_pixel *state, int packet,

@@ -13,6 +13,13 @@
 
 #define SAMPLING_LANES 16
 
+/* Compiled for several widths of vectors, chosen when the program starts. The bits are the same: no operation is fused or reordered. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define WIDE_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define WIDE_VECTORS
+#endif
+
 /* Shared by all pixels and threads, never changed after sampling_create. */
 struct sampling {
   int count;       /* N */

@@ -105,7 +105,7 @@ static int make_fan(const struct reference_light *light, const float *position, 
 }
 
 /* Fills the rays of one packet; returns how many of them end above the horizon. */
-static int aim(const struct fan *fan, const float x[SAMPLING_LANES], const float y[SAMPLING_LANES], int active, struct ray_packet *packet) {
+WIDE_VECTORS static int aim(const struct fan *fan, const float x[SAMPLING_LANES], const float y[SAMPLING_LANES], int active, struct ray_packet *packet) {
   for (int axis = 0; axis < 3; axis++)
     for (int i = 0; i < SAMPLING_LANES; i++)
       packet->direction[axis][i] = fan->base[axis] + x[i] * fan->axis[0][axis] + y[i] * fan->axis[1][axis];
@@ -200,7 +200,7 @@ static void watch(struct work *work, const struct reference_options *options) {
     double fraction = (double)work->tiles_done / (double)work->tile_count;
     pthread_mutex_unlock(&work->lock);
     double left = fraction > 0 ? (seconds_now() - start) * (1 - fraction) / fraction : -1;
-    if (options->progress && options->progress(options->user, fraction, left))
+    if (options->progress && !atomic_load(&work->stop) && options->progress(options->user, fraction, left))
       atomic_store(&work->stop, 1);
     pthread_mutex_lock(&work->lock);
   }
