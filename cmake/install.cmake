@@ -37,6 +37,9 @@ configure_file(cmake/penumbra.pc.in penumbra.pc @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/penumbra.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
 if(TARGET penumbra_program)
+  # Finds the library beside itself, wherever both are installed.
+  file(RELATIVE_PATH to_library "/${CMAKE_INSTALL_BINDIR}" "/${CMAKE_INSTALL_LIBDIR}")
+  set_target_properties(penumbra_program PROPERTIES INSTALL_RPATH "\$ORIGIN/${to_library}")
   install(TARGETS penumbra_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 endif()
 if(EXISTS "${PROJECT_SOURCE_DIR}/docs/penumbra.1")
