@@ -9,6 +9,10 @@
 #include <time.h>
 #include <unistd.h>
 
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
 #include "reference/occluders.h"
 #include "reference/sampling.h"
 
@@ -165,8 +169,16 @@ static void trace_tile(struct work *work, int tile) {
   atomic_fetch_add(&work->rays, rays);
 }
 
+/* Numbers near 1e-38 mean nothing here, and take Embree a hundred times longer than zeros. */
+static void flush_denormals(void) {
+#ifdef __SSE__
+  _mm_setcsr(_mm_getcsr() | 0x8040);
+#endif
+}
+
 static void *worker(void *argument) {
   struct work *work = argument;
+  flush_denormals();
   int tile;
   while (!atomic_load(&work->stop) && (tile = atomic_fetch_add(&work->next_tile, 1)) < work->tile_count) {
     trace_tile(work, tile);

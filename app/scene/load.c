@@ -49,6 +49,8 @@ int scene_load(const struct scene_request *request, struct scene **out) {
     return status;
   }
   scene_measure(scene);
+  scene->setup.ground = request->ground;
+  scene->setup.up_is_z = request->up_is_z;
   *out = scene;
   return STATUS_OK;
 }

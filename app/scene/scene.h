@@ -53,7 +53,9 @@ struct camera {
   double fov; /* vertical, degrees */
 };
 
-/* Everything else that makes two runs the same picture. */
+enum ground { GROUND_DEFAULT = 0, GROUND_ON, GROUND_OFF };
+
+/* Everything that, with the model, makes two runs the same picture. */
 struct setup {
   struct light light;
   struct camera camera;
@@ -63,6 +65,8 @@ struct setup {
   int visibility_scale;
   pn_fit fit;
   double fit_bounds[6];
+  enum ground ground; /* how the scene was loaded: see scene_request */
+  int up_is_z;
 };
 
 struct scene {
@@ -77,7 +81,6 @@ struct scene {
 };
 
 /* What scene_load is told beside the name. Zeroed: the defaults. */
-enum ground { GROUND_DEFAULT = 0, GROUND_ON, GROUND_OFF };
 struct scene_request {
   const char *name; /* a file, or builtin:NAME or builtin:NAME=N */
   int up_is_z;

@@ -49,6 +49,8 @@ static int camera_check(const struct camera *camera) {
 
 static int light_derive(struct light *light) {
   double d[3];
+  if (light->shape == PN_LIGHT_SUN && !(light->size[0] <= 90 && light->size[1] <= 90))
+    return input_error("--light-size: a sun is at most 90 degrees wide");
   v3_sub(light->target, light->center, d);
   if (!(v3_normalize(d) > 0)) return input_error("--light-target is the light's own centre: the two must differ");
   if (!(v3_length(light->up) > 0)) return input_error("--light-up is zero: give a direction, such as 0,0,-1");
