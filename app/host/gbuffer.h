@@ -1,0 +1,29 @@
+/* gbuffer.h: what the camera sees, as the library wants it: depth, geometric normals, who receives. */
+#ifndef PENUMBRA_APP_HOST_GBUFFER_H
+#define PENUMBRA_APP_HOST_GBUFFER_H
+
+#include "host/buffers.h"
+
+struct gbuffer {
+  int width, height;
+  pn_gl framebuffer, depth, normal, mask; /* D32F, RGBA32F (scene space, turned to the camera), R8 */
+  pn_gl program;
+  float view[16], projection[16];
+};
+
+/* Draws the scene from its camera; near and far planes lie close to what is visible. Exit status. */
+int gbuffer_create(const struct gpu_scene *gpu, struct gbuffer **out);
+void gbuffer_free(struct gbuffer **gbuffer);
+
+/* The same on the CPU, top row first. Background: NaN positions and normals, mask and receives 0. */
+struct view {
+  int width, height;
+  float *position; /* 3 a pixel, scene space */
+  float *normal;   /* 3 a pixel, unit, turned to the camera */
+  uint8_t *receives; /* the surface receives */
+  float *mask;       /* contract: 1 where the surface receives and faces all of the light, else 0 */
+};
+int view_read(const struct gbuffer *gbuffer, const struct scene *scene, struct view **out);
+void view_free(struct view **view);
+
+#endif
