@@ -1,0 +1,26 @@
+/* error.h: how far a visibility buffer is from the truth, over its shadow pixels. */
+#ifndef PENUMBRA_APP_ERROR_H
+#define PENUMBRA_APP_ERROR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Visibility below this is shadow. */
+#define ERROR_SHADOW_BELOW (1 - 1 / 2048.0)
+
+/* Undefined (NaN), all of them, when there is no shadow pixel, or when one has a result or truth that is not finite. */
+struct error_statistics {
+  double mae;  /* mean |result - reference| */
+  double rmse;
+  double p95;  /* the least value that at least 95 % of |result - reference| do not exceed */
+  double max;  /* of |result - reference| */
+  double bias; /* mean of result - reference */
+  size_t pixels;     /* shadow pixels */
+  size_t not_finite; /* of them, those without a number */
+};
+
+/* A shadow pixel: mask nonzero, and reference or result below ERROR_SHADOW_BELOW. Sums are taken in double and in the order of the pixels. Returns 0
+ * when memory ran out. */
+int error_measure(const float *reference, const float *result, const uint8_t *mask, size_t count, struct error_statistics *out);
+
+#endif
