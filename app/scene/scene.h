@@ -43,7 +43,7 @@ struct light {
   pn_light_shape shape;
   double center[3], target[3], up[3]; /* what options set; a sun shines along center to target */
   double size[2];                     /* full widths in scene units; sun: full angles in degrees */
-  /* Derived by setup_finish: */
+  /* Derived by light_finish: */
   double direction[3], u[3], v[3]; /* unit */
   double half[2];                  /* half extents in scene units; sun: tangents of the angular radii */
 };
@@ -99,6 +99,9 @@ double scene_extent(const struct scene *scene);
 /* Derives light.direction, u, v and half, checks light and camera, and warns where the light cannot light the scene. Call it after options
  * have changed the set-up. Returns the exit status. */
 int setup_finish(struct scene *scene);
+
+/* The light's part of it: direction, u, v and half. */
+int light_finish(struct light *light);
 
 /* The four corners of a rectangle in scene space; of a sun, the four directions towards its corners (unit length not kept). */
 void light_corners(const struct light *light, double corners[4][3]);

@@ -47,7 +47,7 @@ static int camera_check(const struct camera *camera) {
   return STATUS_OK;
 }
 
-static int light_derive(struct light *light) {
+int light_finish(struct light *light) {
   double d[3];
   if (light->shape == PN_LIGHT_SUN && !(light->size[0] <= 90 && light->size[1] <= 90))
     return input_error("--light-size: a sun is at most 90 degrees wide");
@@ -94,7 +94,7 @@ static void warn_about_light(const struct scene *scene) {
 int setup_finish(struct scene *scene) {
   struct setup *setup = &scene->setup;
   int status = camera_check(&setup->camera);
-  if (!status) status = light_derive(&setup->light);
+  if (!status) status = light_finish(&setup->light);
   if (status) return status;
   warn_about_light(scene);
   return STATUS_OK;

@@ -1,0 +1,65 @@
+/* penumbra help: the overview, a command's options, a technique's table. */
+#include <string.h>
+
+#include "commands/commands.h"
+#include "message.h"
+#include "names.h"
+
+void print_technique(FILE *file, const pn_technique *technique) {
+  fprintf(file, "%s: %s\n  %s\n", technique->name, technique->title, technique->help);
+  if (technique->needs_meshes) fputs("  needs triangle meshes: draw callbacks cast no shadow with it\n", file);
+  if (technique->needs_closed) fputs("  casters should be closed surfaces\n", file);
+  if (!technique->self_shadows) fputs("  casters do not shadow themselves\n", file);
+  if (!technique->parameter_count) fputs("  no parameters\n", file);
+  for (int i = 0; i < technique->parameter_count; i++) {
+    const pn_parameter *p = &technique->parameters[i];
+    char values[160] = "", initial[40];
+    snprintf(initial, sizeof initial, "%g", p->initial);
+    if (p->type == PN_CHOICE) {
+      for (int c = 0; p->choices[c]; c++)
+        snprintf(values + strlen(values), sizeof values - strlen(values), "%s%s", c ? "|" : "", p->choices[c]);
+      snprintf(initial, sizeof initial, "%s", p->choices[(int)p->initial]);
+    } else if (p->type == PN_BOOL) {
+      snprintf(values, sizeof values, "on|off");
+      snprintf(initial, sizeof initial, "%s", p->initial != 0 ? "on" : "off");
+    } else {
+      snprintf(values, sizeof values, "%g..%g%s%s", p->least, p->most, *p->unit ? " " : "", p->unit);
+    }
+    fprintf(file, "  %s=%s  default %s\n      %s%s%s%s\n", p->name, values, initial, p->help, *p->source ? " (" : "", p->source,
+            *p->source ? ")" : "");
+  }
+}
+
+void print_help(FILE *file, const struct command_row *command) {
+  if (command) {
+    fprintf(file, "penumbra %s %s\n%s\n\n", command->name, command->arguments, command->summary);
+    options_print(file, command->bit);
+    return;
+  }
+  fprintf(file, "penumbra %s: real-time soft shadows from area lights, measured against ray-traced truth\n\n", pn_version());
+  for (int i = 0; i < command_count; i++)
+    fprintf(file, "  penumbra %-8s%-20s  %s\n", commands[i].name, commands[i].arguments, commands[i].summary);
+  fputs("  penumbra --version\n\n"
+        "SCENE is a model file (glTF, OBJ, PLY, STL, FBX and whatever else Assimp reads) or builtin:NAME.\n"
+        "penumbra help COMMAND shows a command's options, penumbra help TECHNIQUE a technique's parameters.\n",
+        file);
+}
+
+int command_help(const struct options *o) {
+  if (o->positional_count == 0) {
+    print_help(stdout, NULL);
+    return STATUS_OK;
+  }
+  const char *topic = o->positionals[0], *names[128];
+  const struct command_row *command = command_find(topic);
+  const pn_technique *technique = pn_technique_find(topic);
+  if (command) print_help(stdout, command);
+  else if (technique) print_technique(stdout, technique);
+  if (command || technique) return STATUS_OK;
+  int count = 0;
+  for (int i = 0; i < command_count; i++) names[count++] = commands[i].name;
+  for (int i = 0; i < pn_technique_count() && count < 128; i++) names[count++] = pn_technique_at(i)->name;
+  char hint[80];
+  return input_error("help: '%s' is neither a command nor a technique; %s", topic,
+                     nearest_name(topic, names, count, hint, sizeof hint) ? hint : "penumbra help lists the commands");
+}

@@ -1,0 +1,150 @@
+#include "host/client.h"
+
+#include <epoxy/gl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "message.h"
+
+static void on_message(void *user, pn_log_level level, int message_id, const char *text) {
+  struct client *client = user;
+  if (level == PN_LOG_ERROR) snprintf(client->reason, sizeof client->reason, "%s", text);
+  else if (level == PN_LOG_WARNING) warning("%s", text);
+  else note("%s: %s", pn_message_name(message_id), text);
+}
+
+int client_check(struct client *client, pn_result result) {
+  if (result == PN_OK) return STATUS_OK;
+  const char *reason = *client->reason ? client->reason : pn_result_name(result);
+  int status = result == PN_ERROR_ARGUMENT ? input_error("%s", reason) : work_error("%s", reason);
+  client->reason[0] = 0;
+  return status;
+}
+
+static int add_mesh(struct client *client, const struct gpu_scene *gpu, int index, pn_mesh *out) {
+  const struct mesh *mesh = &gpu->scene->meshes[index];
+  const struct gpu_mesh *buffers = &gpu->meshes[index];
+  pn_mesh_desc desc = {0};
+  desc.positions = (pn_span){.buffer = buffers->positions, .count = mesh->vertex_count};
+  desc.indices = (pn_span){.buffer = buffers->indices, .count = (size_t)mesh->triangle_count * 3};
+  desc.index_bytes = 4;
+  if (mesh->texture >= 0) {
+    desc.texcoords = (pn_span){.buffer = buffers->texcoords, .count = mesh->vertex_count};
+    desc.alpha_texture = gpu->textures[mesh->texture];
+    desc.alpha_cutoff = mesh->cutoff;
+  }
+  memcpy(desc.bounds_min, mesh->bounds_min, sizeof desc.bounds_min);
+  memcpy(desc.bounds_max, mesh->bounds_max, sizeof desc.bounds_max);
+  return client_check(client, pn_mesh_add(client->casters, &desc, out));
+}
+
+/* Pure receivers are not registered: they are never in a caster's map. */
+static int add_casters(struct client *client, const struct gpu_scene *gpu) {
+  const struct scene *scene = gpu->scene;
+  pn_mesh *known = calloc((size_t)scene->mesh_count + 1, sizeof *known);
+  if (!known) return memory_error();
+  int status = client_check(client, pn_casters_create(client->context, &client->casters));
+  for (int i = 0; i < scene->instance_count && !status; i++) {
+    const struct instance *instance = &scene->instances[i];
+    if (!instance->casts) continue;
+    pn_mesh *mesh = &known[instance->mesh];
+    pn_instance ignored;
+    if (!mesh->id) status = add_mesh(client, gpu, instance->mesh, mesh);
+    if (!status) status = client_check(client, pn_instance_add(client->casters, *mesh, instance->scene_from_object, 0, &ignored));
+  }
+  free(known);
+  return status;
+}
+
+static int set_receiver(struct client *client, const struct gbuffer *g, int scale) {
+  int status = client_check(client, pn_receiver_create(client->context, &client->receiver));
+  if (status) return status;
+  pn_receiver_desc desc = PN_RECEIVER_DEFAULTS;
+  desc.depth_texture = g->depth;
+  desc.normal_texture = g->normal;
+  desc.mask_texture = g->mask;
+  desc.scale = scale;
+  desc.format = PN_FORMAT_R32F;
+  memcpy(desc.view, g->view, sizeof desc.view);
+  memcpy(desc.projection, g->projection, sizeof desc.projection);
+  return client_check(client, pn_receiver_set(client->receiver, &desc));
+}
+
+int client_create(const struct gpu_scene *gpu, const struct gbuffer *g, pn_state_mode mode, struct client **out) {
+  *out = NULL;
+  struct client *client = calloc(1, sizeof *client);
+  if (!client) return memory_error();
+  client->width = g->width;
+  client->height = g->height;
+  pn_context_desc desc = {.log = on_message, .user = client, .state = mode};
+  desc.shader_directory = getenv("PENUMBRA_SHADERS");
+  int status = client_check(client, pn_context_create(&desc, &client->context));
+  if (!status) status = add_casters(client, gpu);
+  if (!status) status = set_receiver(client, g, gpu->scene->setup.visibility_scale);
+  if (status) client_free(&client);
+  *out = client;
+  return status;
+}
+
+void client_free(struct client **client) {
+  if (!client || !*client) return;
+  pn_context_destroy(&(*client)->context);
+  free(*client);
+  *client = NULL;
+}
+
+static void describe_light(const struct setup *setup, const struct light *light, pn_light_desc *desc) {
+  memset(desc, 0, sizeof *desc);
+  desc->shape = light->shape;
+  for (int k = 0; k < 3; k++) {
+    desc->center[k] = (float)light->center[k];
+    desc->direction[k] = (float)light->direction[k];
+    desc->axis_u[k] = (float)light->u[k];
+  }
+  desc->half_u = (float)light->half[0];
+  desc->half_v = (float)light->half[1];
+  desc->fit = setup->fit;
+  for (int i = 0; i < 6; i++) desc->fit_bounds[i] = (float)setup->fit_bounds[i];
+  desc->map_width = setup->map[0];
+  desc->map_height = setup->map[1];
+}
+
+int client_light(struct client *client, const struct setup *setup, const struct light *light, const char *spec, pn_light **out) {
+  pn_light_desc desc;
+  describe_light(setup, light, &desc);
+  int status = client_check(client, pn_light_create(client->context, out));
+  if (!status && spec) {
+    char why[400] = "";
+    if (pn_light_technique(*out, spec, why, sizeof why) != PN_OK) status = input_error("%s: %s", spec, why);
+    client->reason[0] = 0;
+  }
+  if (!status) status = client_check(client, pn_light_set(*out, &desc));
+  if (!status && spec) status = client_check(client, pn_prepare(client->context, spec));
+  return status;
+}
+
+int client_frame(struct client *client, pn_light *light) {
+  int status = client_check(client, pn_maps_update(light, client->casters, PN_GROUPS_ALL, &client->receiver, 1));
+  return status ? status : client_check(client, pn_visibility(light, client->receiver));
+}
+
+int client_visibility(struct client *client, pn_light *light, float *out) {
+  pn_image image;
+  int status = client_check(client, pn_result_image(light, client->receiver, &image));
+  if (status) return status;
+  size_t row = (size_t)client->width;
+  float *below = malloc(row * sizeof *below);
+  if (!below) return memory_error();
+  glBindTexture(GL_TEXTURE_2D, image.texture);
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glGetTexImage(GL_TEXTURE_2D, 0, GL_RED, GL_FLOAT, out);
+  for (int y = 0; y < client->height / 2; y++) { /* GL's rows are bottom first */
+    float *a = out + (size_t)y * row, *b = out + (size_t)(client->height - 1 - y) * row;
+    memcpy(below, b, row * sizeof *below);
+    memcpy(b, a, row * sizeof *below);
+    memcpy(a, below, row * sizeof *below);
+  }
+  free(below);
+  return STATUS_OK;
+}

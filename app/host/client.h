@@ -1,0 +1,32 @@
+/* client.h: the program as the library's client: one pn_context with the scene's casters and the camera's receiver. Everything goes through the public
+ * header; what the library logs becomes the program's own lines. */
+#ifndef PENUMBRA_APP_HOST_CLIENT_H
+#define PENUMBRA_APP_HOST_CLIENT_H
+
+#include "host/gbuffer.h"
+
+struct client {
+  pn_context *context;
+  pn_casters *casters;
+  pn_receiver *receiver;
+  int width, height;
+  char reason[400]; /* the library's latest error */
+};
+
+/* gpu and gbuffer must outlive the client. Exit status. */
+int client_create(const struct gpu_scene *gpu, const struct gbuffer *gbuffer, pn_state_mode mode, struct client **out);
+void client_free(struct client **client); /* and its lights */
+
+/* A light of the set-up's map and fit, with a technique. spec NULL: the library's default. light: the scene's own, or another. */
+int client_light(struct client *client, const struct setup *setup, const struct light *light, const char *spec, pn_light **out);
+
+/* Maps and visibility of one frame. */
+int client_frame(struct client *client, pn_light *light);
+
+/* The light's last visibility, one float a pixel, top row first. */
+int client_visibility(struct client *client, pn_light *light, float *out);
+
+/* Turns a library result into the program's line and exit status; PN_OK is STATUS_OK. */
+int client_check(struct client *client, pn_result result);
+
+#endif
