@@ -1,0 +1,73 @@
+/* What blocks light: meshes, instances, draw callbacks; and how a pass draws them. */
+#ifndef PN_CASTERS_CASTERS_H
+#define PN_CASTERS_CASTERS_H
+
+#include "context.h"
+#include "space/matrix.h"
+
+typedef struct { float min[3], max[3]; } pn_box;
+
+/* Boxes over runs of triangles: they bound a mesh in any projection far more tightly than one box does. */
+enum { PN_BOXES_MAX = 256, PN_BOX_TRIANGLES = 64 };
+
+typedef struct {
+  uint32_t id; /* 0: a free slot */
+  pn_span positions, indices, texcoords; /* as described; data pointers are not kept */
+  int index_bytes;
+  uint32_t *kept_indices; /* positions and indices in memory: the mesh's triangles as described, for deformation */
+  size_t kept_count;
+  pn_gl vertex_array, buffers[3]; /* positions, indices, texcoords; 0 where the host owns it */
+  size_t bytes[3];        /* in own buffers */
+  size_t draw_count;      /* vertices or indices drawn */
+  pn_gl alpha_texture;
+  int alpha_channel;
+  float alpha_cutoff;
+  bool clockwise;
+  pn_box *boxes;
+  int box_count;
+} pn_mesh_data;
+
+typedef struct {
+  uint32_t id;
+  int mesh; /* slot in meshes: stays while the instance does */
+  int group;
+  pn_matrix scene_from_object;
+} pn_instance_data;
+
+typedef struct {
+  pn_draw_fn draw; /* NULL: none */
+  void *user;
+  pn_box bounds;
+} pn_callback;
+
+struct pn_casters {
+  pn_object object;
+  pn_mesh_data *meshes;
+  int mesh_count, mesh_capacity;
+  pn_instance_data *instances;
+  int instance_count, instance_capacity;
+  uint32_t next_id;
+  pn_callback callbacks[PN_GROUP_COUNT];
+  uint64_t revision; /* counts every change */
+};
+
+pn_mesh_data *pn_find_mesh(const pn_casters *casters, uint32_t id);
+
+/* Calls visit with the eight corners, in scene space, of every box of every caster in groups. */
+typedef void (*pn_box_visitor)(void *user, const double corners[8][3]);
+void pn_casters_each_box(const pn_casters *casters, uint32_t groups, pn_box_visitor visit, void *user);
+
+/* Draws all casters of groups into the pass that has begun. */
+typedef struct {
+  pn_matrix clip_from_scene;
+  uint32_t groups;
+  pn_faces faces;
+  pn_gl peel; /* the previous layer, or 0 */
+  int layer, width, height;
+} pn_caster_draw;
+pn_result pn_casters_draw_pass(pn_casters *casters, const pn_caster_draw *draw);
+
+/* Compiles what drawing may need. */
+pn_result pn_casters_prepare(pn_gpu *gpu, bool peel);
+
+#endif

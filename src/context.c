@@ -1,0 +1,160 @@
+#include "context.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- creation ---- */
+
+pn_result pn_context_create(const pn_context_desc *desc, pn_context **out) {
+  if (!out) return PN_ERROR_ARGUMENT;
+  *out = NULL;
+  void *(*allocate)(void *, void *, size_t) = desc ? desc->allocate : NULL;
+  pn_context *context = allocate ? allocate(desc->user, NULL, sizeof *context) : malloc(sizeof *context);
+  if (!context) {
+    if (desc && desc->log) desc->log(desc->user, PN_LOG_ERROR, PN_MESSAGE_OUT_OF_MEMORY, "no memory for a context");
+    return PN_ERROR_OUT_OF_MEMORY;
+  }
+  memset(context, 0, sizeof *context);
+  pn_result result = pn_gpu_open(&context->gpu, desc);
+  if (result != PN_OK) {
+    pn_gpu gpu = context->gpu;
+    pn_free(&gpu, context);
+    return result;
+  }
+  *out = context;
+  return PN_OK;
+}
+
+static void free_objects(pn_context *context, bool abandon) {
+  while (context->objects) {
+    pn_object *object = context->objects;
+    switch (object->kind) {
+      case PN_OBJECT_CASTERS: pn_casters_free((pn_casters *)object, abandon); break;
+      case PN_OBJECT_RECEIVER: pn_receiver_free((pn_receiver *)object, abandon); break;
+      case PN_OBJECT_LIGHT: pn_light_free((pn_light *)object, abandon); break;
+    }
+  }
+}
+
+static void free_forward_texts(pn_context *context) {
+  while (context->forward_texts) {
+    pn_forward_text *text = context->forward_texts;
+    context->forward_texts = text->next;
+    pn_free(&context->gpu, text->key);
+    pn_free(&context->gpu, text->text);
+    pn_free(&context->gpu, text);
+  }
+}
+
+static void close_context(pn_context **handle, bool abandon) {
+  if (!handle || !*handle) return;
+  pn_context *context = *handle;
+  *handle = NULL;
+  free_objects(context, abandon);
+  free_forward_texts(context);
+  pn_uniform_buffer_free(&context->gpu, &context->forward_block, abandon);
+  pn_gpu_close(&context->gpu, abandon);
+  pn_gpu gpu = context->gpu; /* the allocator outlives the memory it frees */
+  pn_free(&gpu, context);
+}
+
+void pn_context_destroy(pn_context **context) { close_context(context, false); }
+
+void pn_context_abandon(pn_context **context) { close_context(context, true); }
+
+/* ---- objects ---- */
+
+void *pn_object_create(pn_context *context, pn_object_kind kind, size_t bytes) {
+  pn_object *object = pn_allocate_zero(&context->gpu, bytes);
+  if (!object) return NULL;
+  object->kind = kind;
+  object->context = context;
+  object->next = context->objects;
+  if (object->next) object->next->previous = object;
+  context->objects = object;
+  return object;
+}
+
+void pn_object_unlink(pn_object *object) {
+  if (object->next) object->next->previous = object->previous;
+  if (object->previous)
+    object->previous->next = object->next;
+  else
+    object->context->objects = object->next;
+}
+
+/* ---- the host's GL state ---- */
+
+void pn_enter(pn_context *context) {
+  if (context->gpu.desc.state == PN_STATE_RESTORE) pn_state_save(&context->gpu, &context->saved);
+}
+
+pn_result pn_leave(pn_context *context, pn_result result) {
+  if (context->gpu.desc.state == PN_STATE_RESTORE) pn_state_restore(&context->gpu, &context->saved);
+  if (context->gpu.desc.state == PN_STATE_RESET) pn_state_reset(&context->gpu);
+  return result;
+}
+
+static pn_result scope(pn_context *context, bool begin) {
+  if (!context) return PN_ERROR_ARGUMENT;
+  if (context->gpu.desc.state != PN_STATE_SCOPED) return PN_OK;
+  if (context->scope == begin)
+    return pn_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_STATE_SCOPE, "%s",
+                   begin ? "pn_state_begin was called twice" : "pn_state_end without pn_state_begin");
+  context->scope = begin;
+  if (begin)
+    pn_state_save(&context->gpu, &context->saved);
+  else
+    pn_state_restore(&context->gpu, &context->saved);
+  return PN_OK;
+}
+
+pn_result pn_state_begin(pn_context *context) { return scope(context, true); }
+pn_result pn_state_end(pn_context *context) { return scope(context, false); }
+
+/* ---- questions and switches ---- */
+
+pn_result pn_reload_shaders(pn_context *context) {
+  if (!context) return PN_ERROR_ARGUMENT;
+  pn_programs_free(&context->gpu, false);
+  return PN_OK;
+}
+
+pn_result pn_timing(pn_context *context, int enabled) {
+  if (!context) return PN_ERROR_ARGUMENT;
+  context->gpu.timing = enabled != 0;
+  return PN_OK;
+}
+
+static int at_most(int value, int limit) { return value < limit ? value : limit; }
+
+pn_result pn_context_info(const pn_context *context, pn_info *out) {
+  if (!context || !out) return PN_ERROR_ARGUMENT;
+  const pn_gpu *gpu = &context->gpu;
+  *out = (pn_info){
+      .vendor = (const char *)GL(gpu, GetString)(GL_VENDOR),
+      .renderer = (const char *)GL(gpu, GetString)(GL_RENDERER),
+      .version = (const char *)GL(gpu, GetString)(GL_VERSION),
+      .gl_version = gpu->can.version,
+      .software = gpu->can.software,
+      .map_size_max = at_most(gpu->can.texture_size_max, PN_MAP_SIZE_MAX),
+      .map_layers_max = gpu->can.layers_max,
+      .gpu_memory = gpu->memory,
+  };
+  return PN_OK;
+}
+
+int pn_feature(const pn_context *context, int index, const char **name, int *in_use, const char **help) {
+  static const struct { const char *name, *help; } features[] = {
+      {"timestamps", "stage times from the GPU's own clock; without: glFinish and the system's clock"},
+      {"clip_control", "saves and sets glClipControl; without: nothing to save"},
+      {"robustness", "a lost context is noticed by its reset status; without: by failing calls"},
+  };
+  if (!context || index < 0 || index >= (int)(sizeof features / sizeof *features)) return 0;
+  const pn_capabilities *can = &context->gpu.can;
+  const int used[] = {!can->software, can->clip_control, can->robustness};
+  if (name) *name = features[index].name;
+  if (in_use) *in_use = used[index];
+  if (help) *help = features[index].help;
+  return 1;
+}

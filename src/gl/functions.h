@@ -1,0 +1,133 @@
+/* Every GL function the library calls. The table holds pointers to function pointers: with libepoxy they point at its lazily
+ * resolving variables, with a host's loader at the storage beside the table. Call as GL(gpu, DrawArrays)(...). */
+#ifndef PN_GL_FUNCTIONS_H
+#define PN_GL_FUNCTIONS_H
+
+#include <epoxy/gl.h>
+
+#define PN_GL_REQUIRED(X) \
+  X(PFNGLACTIVETEXTUREPROC, ActiveTexture) \
+  X(PFNGLATTACHSHADERPROC, AttachShader) \
+  X(PFNGLBINDBUFFERPROC, BindBuffer) \
+  X(PFNGLBINDBUFFERBASEPROC, BindBufferBase) \
+  X(PFNGLBINDBUFFERRANGEPROC, BindBufferRange) \
+  X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer) \
+  X(PFNGLBINDSAMPLERPROC, BindSampler) \
+  X(PFNGLBINDTEXTUREPROC, BindTexture) \
+  X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray) \
+  X(PFNGLBLENDEQUATIONSEPARATEPROC, BlendEquationSeparate) \
+  X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate) \
+  X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer) \
+  X(PFNGLBUFFERDATAPROC, BufferData) \
+  X(PFNGLBUFFERSUBDATAPROC, BufferSubData) \
+  X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus) \
+  X(PFNGLCLEARBUFFERFVPROC, ClearBufferfv) \
+  X(PFNGLCLEARDEPTHPROC, ClearDepth) \
+  X(PFNGLCOLORMASKPROC, ColorMask) \
+  X(PFNGLCOLORMASKIPROC, ColorMaski) \
+  X(PFNGLCOMPILESHADERPROC, CompileShader) \
+  X(PFNGLCREATEPROGRAMPROC, CreateProgram) \
+  X(PFNGLCREATESHADERPROC, CreateShader) \
+  X(PFNGLCULLFACEPROC, CullFace) \
+  X(PFNGLDELETEBUFFERSPROC, DeleteBuffers) \
+  X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers) \
+  X(PFNGLDELETEPROGRAMPROC, DeleteProgram) \
+  X(PFNGLDELETEQUERIESPROC, DeleteQueries) \
+  X(PFNGLDELETESAMPLERSPROC, DeleteSamplers) \
+  X(PFNGLDELETESHADERPROC, DeleteShader) \
+  X(PFNGLDELETETEXTURESPROC, DeleteTextures) \
+  X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays) \
+  X(PFNGLDEPTHFUNCPROC, DepthFunc) \
+  X(PFNGLDEPTHMASKPROC, DepthMask) \
+  X(PFNGLDEPTHRANGEPROC, DepthRange) \
+  X(PFNGLDISABLEPROC, Disable) \
+  X(PFNGLDISABLEIPROC, Disablei) \
+  X(PFNGLDRAWARRAYSPROC, DrawArrays) \
+  X(PFNGLDRAWBUFFERSPROC, DrawBuffers) \
+  X(PFNGLDRAWELEMENTSPROC, DrawElements) \
+  X(PFNGLENABLEPROC, Enable) \
+  X(PFNGLENABLEIPROC, Enablei) \
+  X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
+  X(PFNGLFINISHPROC, Finish) \
+  X(PFNGLFRAMEBUFFERTEXTUREPROC, FramebufferTexture) \
+  X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D) \
+  X(PFNGLFRAMEBUFFERTEXTURELAYERPROC, FramebufferTextureLayer) \
+  X(PFNGLFRONTFACEPROC, FrontFace) \
+  X(PFNGLGENBUFFERSPROC, GenBuffers) \
+  X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers) \
+  X(PFNGLGENQUERIESPROC, GenQueries) \
+  X(PFNGLGENTEXTURESPROC, GenTextures) \
+  X(PFNGLGENSAMPLERSPROC, GenSamplers) \
+  X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays) \
+  X(PFNGLGETACTIVEUNIFORMPROC, GetActiveUniform) \
+  X(PFNGLGETBOOLEANVPROC, GetBooleanv) \
+  X(PFNGLGETBOOLEANI_VPROC, GetBooleani_v) \
+  X(PFNGLGETDOUBLEVPROC, GetDoublev) \
+  X(PFNGLGETERRORPROC, GetError) \
+  X(PFNGLGETFLOATVPROC, GetFloatv) \
+  X(PFNGLGETFRAMEBUFFERATTACHMENTPARAMETERIVPROC, GetFramebufferAttachmentParameteriv) \
+  X(PFNGLGETINTEGERVPROC, GetIntegerv) \
+  X(PFNGLGETINTEGERI_VPROC, GetIntegeri_v) \
+  X(PFNGLGETINTEGER64I_VPROC, GetInteger64i_v) \
+  X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog) \
+  X(PFNGLGETPROGRAMIVPROC, GetProgramiv) \
+  X(PFNGLGETQUERYOBJECTIVPROC, GetQueryObjectiv) \
+  X(PFNGLGETQUERYOBJECTUI64VPROC, GetQueryObjectui64v) \
+  X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog) \
+  X(PFNGLGETSHADERIVPROC, GetShaderiv) \
+  X(PFNGLGETSTRINGPROC, GetString) \
+  X(PFNGLGETSTRINGIPROC, GetStringi) \
+  X(PFNGLGETTEXLEVELPARAMETERIVPROC, GetTexLevelParameteriv) \
+  X(PFNGLGETUNIFORMBLOCKINDEXPROC, GetUniformBlockIndex) \
+  X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation) \
+  X(PFNGLISENABLEDPROC, IsEnabled) \
+  X(PFNGLISENABLEDIPROC, IsEnabledi) \
+  X(PFNGLISTEXTUREPROC, IsTexture) \
+  X(PFNGLISBUFFERPROC, IsBuffer) \
+  X(PFNGLISFRAMEBUFFERPROC, IsFramebuffer) \
+  X(PFNGLLINKPROGRAMPROC, LinkProgram) \
+  X(PFNGLLOGICOPPROC, LogicOp) \
+  X(PFNGLPIXELSTOREIPROC, PixelStorei) \
+  X(PFNGLPOLYGONMODEPROC, PolygonMode) \
+  X(PFNGLQUERYCOUNTERPROC, QueryCounter) \
+  X(PFNGLREADBUFFERPROC, ReadBuffer) \
+  X(PFNGLREADPIXELSPROC, ReadPixels) \
+  X(PFNGLSAMPLERPARAMETERIPROC, SamplerParameteri) \
+  X(PFNGLSCISSORPROC, Scissor) \
+  X(PFNGLSHADERSOURCEPROC, ShaderSource) \
+  X(PFNGLTEXIMAGE2DPROC, TexImage2D) \
+  X(PFNGLTEXIMAGE3DPROC, TexImage3D) \
+  X(PFNGLTEXPARAMETERIPROC, TexParameteri) \
+  X(PFNGLUNIFORM1FPROC, Uniform1f) \
+  X(PFNGLUNIFORM1IPROC, Uniform1i) \
+  X(PFNGLUNIFORM2IPROC, Uniform2i) \
+  X(PFNGLUNIFORM4FVPROC, Uniform4fv) \
+  X(PFNGLUNIFORM4IVPROC, Uniform4iv) \
+  X(PFNGLUNIFORMBLOCKBINDINGPROC, UniformBlockBinding) \
+  X(PFNGLUNIFORMMATRIX3FVPROC, UniformMatrix3fv) \
+  X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv) \
+  X(PFNGLUSEPROGRAMPROC, UseProgram) \
+  X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer) \
+  X(PFNGLVIEWPORTPROC, Viewport)
+
+/* Newer than 3.3, or an extension: NULL where the context has them not. */
+#define PN_GL_OPTIONAL(X) \
+  X(PFNGLCLIPCONTROLPROC, ClipControl) \
+  X(PFNGLGETGRAPHICSRESETSTATUSPROC, GetGraphicsResetStatus)
+
+typedef struct {
+#define X(type, name) type *name;
+  PN_GL_REQUIRED(X) PN_GL_OPTIONAL(X)
+#undef X
+} pn_gl_table;
+
+/* Where a host's loader puts what it finds. */
+typedef struct {
+#define X(type, name) type name;
+  PN_GL_REQUIRED(X) PN_GL_OPTIONAL(X)
+#undef X
+} pn_gl_storage;
+
+#define GL(gpu, name) (*(gpu)->gl.name)
+
+#endif

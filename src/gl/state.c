@@ -1,0 +1,196 @@
+#include "gl/state.h"
+
+/* Capabilities without an index. GL_DITHER is the only one that is on by default here; multisampling is of no effect in the
+ * single-sample targets the library draws to. */
+static const GLenum switches[] = {
+    GL_SCISSOR_TEST,          GL_STENCIL_TEST,    GL_DEPTH_TEST,        GL_CULL_FACE,
+    GL_POLYGON_OFFSET_FILL,   GL_COLOR_LOGIC_OP,  GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE,
+    GL_SAMPLE_COVERAGE,       GL_SAMPLE_MASK,     GL_PRIMITIVE_RESTART, GL_FRAMEBUFFER_SRGB,
+    GL_DITHER,                GL_DEPTH_CLAMP,     GL_SAMPLE_ALPHA_TO_ONE,
+    GL_PRIMITIVE_RESTART_FIXED_INDEX, /* 4.3: last, so that older contexts leave it out */
+};
+enum { SWITCH_COUNT = sizeof switches / sizeof *switches };
+_Static_assert((int)SWITCH_COUNT == (int)PN_SWITCHES, "pn_gl_state.enabled has one entry for each switch");
+
+static const GLenum pack_names[4] = {GL_PACK_ALIGNMENT, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS};
+static const GLenum unpack_names[4] = {GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS,
+                                       GL_UNPACK_SKIP_PIXELS};
+static const GLint pixel_defaults[4] = {4, 0, 0, 0};
+
+static int least(int a, int b) { return a < b ? a : b; }
+static int switch_count(const pn_gpu *gpu) { return gpu->can.fixed_restart ? SWITCH_COUNT : SWITCH_COUNT - 1; }
+static int draw_buffers(const pn_gpu *gpu) { return least(gpu->can.draw_buffers, PN_DRAW_BUFFERS_SAVED); }
+static int clip_distances(const pn_gpu *gpu) { return least(gpu->can.clip_distances, PN_CLIP_DISTANCES_SAVED); }
+
+static void enable(pn_gpu *gpu, GLenum name, bool on) {
+  if (on)
+    GL(gpu, Enable)(name);
+  else
+    GL(gpu, Disable)(name);
+}
+
+static void save_bindings(pn_gpu *gpu, pn_gl_state *state) {
+  GL(gpu, GetIntegerv)(GL_CURRENT_PROGRAM, &state->program);
+  GL(gpu, GetIntegerv)(GL_VERTEX_ARRAY_BINDING, &state->vertex_array);
+  GL(gpu, GetIntegerv)(GL_ARRAY_BUFFER_BINDING, &state->array_buffer);
+  GL(gpu, GetIntegerv)(GL_DRAW_FRAMEBUFFER_BINDING, &state->draw_framebuffer);
+  GL(gpu, GetIntegerv)(GL_READ_FRAMEBUFFER_BINDING, &state->read_framebuffer);
+  GL(gpu, GetIntegerv)(GL_UNIFORM_BUFFER_BINDING, &state->uniform_buffer);
+  GL(gpu, GetIntegerv)(GL_PIXEL_PACK_BUFFER_BINDING, &state->pixel_pack);
+  GL(gpu, GetIntegerv)(GL_PIXEL_UNPACK_BUFFER_BINDING, &state->pixel_unpack);
+  GL(gpu, GetIntegeri_v)(GL_UNIFORM_BUFFER_BINDING, PN_BLOCK_BINDING, &state->block_buffer);
+  GL(gpu, GetInteger64i_v)(GL_UNIFORM_BUFFER_START, PN_BLOCK_BINDING, &state->block_start);
+  GL(gpu, GetInteger64i_v)(GL_UNIFORM_BUFFER_SIZE, PN_BLOCK_BINDING, &state->block_size);
+}
+
+static void save_textures(pn_gpu *gpu, pn_gl_state *state) {
+  GL(gpu, GetIntegerv)(GL_ACTIVE_TEXTURE, &state->active_texture);
+  for (int unit = 0; unit < PN_UNIT_COUNT; unit++) {
+    GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);
+    GL(gpu, GetIntegerv)(GL_TEXTURE_BINDING_2D, &state->texture_2d[unit]);
+    GL(gpu, GetIntegerv)(GL_TEXTURE_BINDING_2D_ARRAY, &state->texture_array[unit]);
+    GL(gpu, GetIntegerv)(GL_TEXTURE_BINDING_2D_MULTISAMPLE, &state->texture_multisample[unit]);
+    GL(gpu, GetIntegerv)(GL_SAMPLER_BINDING, &state->sampler[unit]);
+  }
+  GL(gpu, ActiveTexture)((GLenum)state->active_texture);
+}
+
+static void save_raster(pn_gpu *gpu, pn_gl_state *state) {
+  GL(gpu, GetIntegerv)(GL_VIEWPORT, state->viewport);
+  GL(gpu, GetIntegerv)(GL_DEPTH_FUNC, &state->depth_func);
+  GL(gpu, GetIntegerv)(GL_CULL_FACE_MODE, &state->cull_face);
+  GL(gpu, GetIntegerv)(GL_FRONT_FACE, &state->front_face);
+  /* Core contexts answer one value, compatibility contexts two. */
+  GL(gpu, GetIntegerv)(GL_POLYGON_MODE, state->polygon_mode);
+  GL(gpu, GetBooleanv)(GL_DEPTH_WRITEMASK, &state->depth_mask);
+  GL(gpu, GetDoublev)(GL_DEPTH_RANGE, state->depth_range);
+  GL(gpu, GetDoublev)(GL_DEPTH_CLEAR_VALUE, &state->clear_depth);
+  if (gpu->can.clip_control) {
+    GL(gpu, GetIntegerv)(GL_CLIP_ORIGIN, &state->clip_origin);
+    GL(gpu, GetIntegerv)(GL_CLIP_DEPTH_MODE, &state->clip_depth);
+  }
+  for (int i = 0; i < draw_buffers(gpu); i++) {
+    GL(gpu, GetBooleani_v)(GL_COLOR_WRITEMASK, (GLuint)i, state->color_mask[i]);
+    state->blend[i] = GL(gpu, IsEnabledi)(GL_BLEND, (GLuint)i);
+  }
+  for (int i = 0; i < clip_distances(gpu); i++) state->clip[i] = GL(gpu, IsEnabled)(GL_CLIP_DISTANCE0 + (GLenum)i);
+  for (int i = 0; i < switch_count(gpu); i++) state->enabled[i] = GL(gpu, IsEnabled)(switches[i]);
+}
+
+void pn_state_save(pn_gpu *gpu, pn_gl_state *state) {
+  save_bindings(gpu, state);
+  save_textures(gpu, state);
+  save_raster(gpu, state);
+  for (int i = 0; i < 4; i++) {
+    GL(gpu, GetIntegerv)(pack_names[i], &state->pack[i]);
+    GL(gpu, GetIntegerv)(unpack_names[i], &state->unpack[i]);
+  }
+}
+
+static void restore_bindings(pn_gpu *gpu, const pn_gl_state *state) {
+  GL(gpu, UseProgram)((GLuint)state->program);
+  GL(gpu, BindVertexArray)((GLuint)state->vertex_array);
+  GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, (GLuint)state->array_buffer);
+  GL(gpu, BindFramebuffer)(GL_DRAW_FRAMEBUFFER, (GLuint)state->draw_framebuffer);
+  GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, (GLuint)state->read_framebuffer);
+  if (state->block_size > 0)
+    GL(gpu, BindBufferRange)
+  (GL_UNIFORM_BUFFER, PN_BLOCK_BINDING, (GLuint)state->block_buffer, (GLintptr)state->block_start,
+   (GLsizeiptr)state->block_size);
+  else
+    GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PN_BLOCK_BINDING, (GLuint)state->block_buffer);
+  GL(gpu, BindBuffer)(GL_UNIFORM_BUFFER, (GLuint)state->uniform_buffer); /* after the indexed one, which sets it too */
+  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, (GLuint)state->pixel_pack);
+  GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, (GLuint)state->pixel_unpack);
+}
+
+static void restore_textures(pn_gpu *gpu, const pn_gl_state *state) {
+  for (int unit = 0; unit < PN_UNIT_COUNT; unit++) {
+    GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);
+    GL(gpu, BindTexture)(GL_TEXTURE_2D, (GLuint)state->texture_2d[unit]);
+    GL(gpu, BindTexture)(GL_TEXTURE_2D_ARRAY, (GLuint)state->texture_array[unit]);
+    GL(gpu, BindTexture)(GL_TEXTURE_2D_MULTISAMPLE, (GLuint)state->texture_multisample[unit]);
+    GL(gpu, BindSampler)((GLuint)unit, (GLuint)state->sampler[unit]);
+  }
+  GL(gpu, ActiveTexture)((GLenum)state->active_texture);
+}
+
+static void restore_raster(pn_gpu *gpu, const pn_gl_state *state) {
+  GL(gpu, Viewport)(state->viewport[0], state->viewport[1], state->viewport[2], state->viewport[3]);
+  GL(gpu, DepthFunc)((GLenum)state->depth_func);
+  GL(gpu, CullFace)((GLenum)state->cull_face);
+  GL(gpu, FrontFace)((GLenum)state->front_face);
+  if (gpu->can.compatibility) {
+    GL(gpu, PolygonMode)(GL_FRONT, (GLenum)state->polygon_mode[0]);
+    GL(gpu, PolygonMode)(GL_BACK, (GLenum)state->polygon_mode[1]);
+  } else {
+    GL(gpu, PolygonMode)(GL_FRONT_AND_BACK, (GLenum)state->polygon_mode[0]);
+  }
+  GL(gpu, DepthMask)(state->depth_mask);
+  GL(gpu, DepthRange)(state->depth_range[0], state->depth_range[1]);
+  GL(gpu, ClearDepth)(state->clear_depth);
+  if (gpu->can.clip_control) GL(gpu, ClipControl)((GLenum)state->clip_origin, (GLenum)state->clip_depth);
+  for (int i = 0; i < draw_buffers(gpu); i++) {
+    const GLboolean *mask = state->color_mask[i];
+    GL(gpu, ColorMaski)((GLuint)i, mask[0], mask[1], mask[2], mask[3]);
+    if (state->blend[i])
+      GL(gpu, Enablei)(GL_BLEND, (GLuint)i);
+    else
+      GL(gpu, Disablei)(GL_BLEND, (GLuint)i);
+  }
+  for (int i = 0; i < clip_distances(gpu); i++) enable(gpu, GL_CLIP_DISTANCE0 + (GLenum)i, state->clip[i]);
+  for (int i = 0; i < switch_count(gpu); i++) enable(gpu, switches[i], state->enabled[i]);
+}
+
+void pn_state_restore(pn_gpu *gpu, const pn_gl_state *state) {
+  restore_bindings(gpu, state);
+  restore_textures(gpu, state);
+  restore_raster(gpu, state);
+  for (int i = 0; i < 4; i++) {
+    GL(gpu, PixelStorei)(pack_names[i], state->pack[i]);
+    GL(gpu, PixelStorei)(unpack_names[i], state->unpack[i]);
+  }
+}
+
+static void reset_pixels(pn_gpu *gpu) {
+  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
+  GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, 0);
+  for (int i = 0; i < 4; i++) {
+    GL(gpu, PixelStorei)(pack_names[i], pixel_defaults[i]);
+    GL(gpu, PixelStorei)(unpack_names[i], pixel_defaults[i]);
+  }
+}
+
+void pn_state_neutral(pn_gpu *gpu) {
+  for (int i = 0; i < switch_count(gpu); i++) GL(gpu, Disable)(switches[i]);
+  for (int i = 0; i < clip_distances(gpu); i++) GL(gpu, Disable)(GL_CLIP_DISTANCE0 + (GLenum)i);
+  GL(gpu, Disable)(GL_BLEND);
+  GL(gpu, ColorMask)(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  GL(gpu, DepthMask)(GL_FALSE);
+  GL(gpu, DepthFunc)(GL_LESS);
+  GL(gpu, DepthRange)(0, 1);
+  GL(gpu, PolygonMode)(GL_FRONT_AND_BACK, GL_FILL);
+  GL(gpu, FrontFace)(GL_CCW);
+  GL(gpu, CullFace)(GL_BACK);
+  if (gpu->can.clip_control) GL(gpu, ClipControl)(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  reset_pixels(gpu);
+}
+
+void pn_state_reset(pn_gpu *gpu) {
+  pn_state_neutral(gpu);
+  GL(gpu, Enable)(GL_DITHER);
+  GL(gpu, DepthMask)(GL_TRUE);
+  GL(gpu, ClearDepth)(1);
+  GL(gpu, UseProgram)(0);
+  GL(gpu, BindVertexArray)(0);
+  GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, 0);
+  GL(gpu, BindFramebuffer)(GL_FRAMEBUFFER, 0);
+  GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PN_BLOCK_BINDING, 0);
+  for (int unit = PN_UNIT_COUNT; unit-- > 0;) { /* ends at unit 0, the default active one */
+    GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);
+    GL(gpu, BindTexture)(GL_TEXTURE_2D, 0);
+    GL(gpu, BindTexture)(GL_TEXTURE_2D_ARRAY, 0);
+    GL(gpu, BindTexture)(GL_TEXTURE_2D_MULTISAMPLE, 0);
+    GL(gpu, BindSampler)((GLuint)unit, 0);
+  }
+}

@@ -1,0 +1,216 @@
+#include "gl/target.h"
+
+#include <string.h>
+
+#include "gl/state.h"
+
+/* ---- memory ---- */
+
+pn_result pn_memory_take(pn_gpu *gpu, size_t bytes) {
+  size_t limit = gpu->desc.gpu_memory_limit;
+  if (limit && (bytes > limit || gpu->memory > limit - bytes))
+    return pn_fail(gpu, PN_ERROR_OUT_OF_MEMORY, PN_MESSAGE_GPU_MEMORY,
+                   "%zu bytes of GPU memory more would pass the limit of %zu (%zu in use)", bytes, limit, gpu->memory);
+  gpu->memory += bytes;
+  return PN_OK;
+}
+
+void pn_memory_give(pn_gpu *gpu, size_t bytes) { gpu->memory -= bytes; }
+
+pn_result pn_memory_check(pn_gpu *gpu, size_t bytes) {
+  bool exhausted = false;
+  for (GLenum error; (error = GL(gpu, GetError)()) != GL_NO_ERROR;) {
+    if (error == GL_OUT_OF_MEMORY) exhausted = true;
+    if (error == GL_CONTEXT_LOST) return pn_fail(gpu, PN_ERROR_CONTEXT_LOST, PN_MESSAGE_GL_LOST, "the GL context is lost");
+  }
+  if (!exhausted) return PN_OK;
+  return pn_fail(gpu, PN_ERROR_OUT_OF_MEMORY, PN_MESSAGE_GPU_MEMORY, "the driver has no %zu bytes of GPU memory", bytes);
+}
+
+/* ---- textures ---- */
+
+typedef struct { GLenum format, layout, type; int bytes, channels; } format_info;
+
+static const format_info formats[] = {
+    {GL_R8, GL_RED, GL_UNSIGNED_BYTE, 1, 1},
+    {GL_R16F, GL_RED, GL_FLOAT, 2, 1},
+    {GL_R32F, GL_RED, GL_FLOAT, 4, 1},
+    {GL_RG32F, GL_RG, GL_FLOAT, 8, 2},
+    {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16, 4},
+    {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, 2, 1},
+    {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, 4, 1},
+    {GL_DEPTH_COMPONENT32, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, 4, 1},
+    {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4, 1},
+    {GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, 4, 1},
+    {GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, 8, 1},
+};
+
+static const format_info *find_format(GLenum format) {
+  for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+    if (formats[i].format == format) return &formats[i];
+  return NULL;
+}
+
+static int half(int size, int level) { return size >> level > 1 ? size >> level : 1; }
+
+static size_t texture_bytes(const pn_texture *t, const format_info *info) {
+  size_t bytes = 0;
+  for (int level = 0; level < t->levels; level++)
+    bytes += (size_t)half(t->width, level) * (size_t)half(t->height, level) * (size_t)(t->layers ? t->layers : 1) *
+             (size_t)info->bytes;
+  return bytes;
+}
+
+/* Allocates the images; the unit used is one the library saves. */
+static void define_texture(pn_gpu *gpu, const pn_texture *t, const format_info *info) {
+  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
+  GL(gpu, BindTexture)(t->target, t->id);
+  GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, 0);
+  for (int level = 0; level < t->levels; level++) {
+    int width = half(t->width, level), height = half(t->height, level);
+    if (t->layers)
+      GL(gpu, TexImage3D)
+    (t->target, level, (GLint)t->format, width, height, t->layers, 0, info->layout, info->type, NULL);
+    else
+      GL(gpu, TexImage2D)(t->target, level, (GLint)t->format, width, height, 0, info->layout, info->type, NULL);
+  }
+  GL(gpu, TexParameteri)(t->target, GL_TEXTURE_MAX_LEVEL, t->levels - 1);
+  GL(gpu, TexParameteri)
+  (t->target, GL_TEXTURE_MIN_FILTER, t->levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);
+  GL(gpu, TexParameteri)(t->target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  GL(gpu, TexParameteri)(t->target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  GL(gpu, TexParameteri)(t->target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  GL(gpu, BindTexture)(t->target, 0);
+}
+
+static bool same_shape(const pn_texture *a, const pn_texture *b) {
+  return a->id && a->target == b->target && a->format == b->format && a->width == b->width && a->height == b->height &&
+         a->layers == b->layers && a->levels == b->levels;
+}
+
+pn_result pn_texture_shape(pn_gpu *gpu, pn_texture *texture, GLenum format, int width, int height, int layers, int levels) {
+  pn_texture made = {.target = layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, .format = format,
+                     .width = width, .height = height, .layers = layers, .levels = levels};
+  if (same_shape(texture, &made)) return PN_OK;
+  const format_info *info = find_format(format);
+  if (!info || width < 1 || height < 1 || width > gpu->can.texture_size_max || height > gpu->can.texture_size_max ||
+      layers > gpu->can.layers_max)
+    return pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_FRAMEBUFFER, "this device has no texture of %d x %d x %d", width,
+                   height, layers);
+  made.bytes = texture_bytes(&made, info);
+  pn_result result = pn_memory_take(gpu, made.bytes);
+  if (result != PN_OK) return result;
+  GL(gpu, GenTextures)(1, &made.id);
+  define_texture(gpu, &made, info);
+  result = pn_memory_check(gpu, made.bytes);
+  if (result != PN_OK) {
+    pn_texture_free(gpu, &made, result == PN_ERROR_CONTEXT_LOST);
+    return result;
+  }
+  pn_texture_free(gpu, texture, false);
+  *texture = made;
+  return PN_OK;
+}
+
+void pn_texture_free(pn_gpu *gpu, pn_texture *texture, bool abandon) {
+  if (!texture->id) return;
+  if (!abandon) GL(gpu, DeleteTextures)(1, &texture->id);
+  pn_memory_give(gpu, texture->bytes);
+  memset(texture, 0, sizeof *texture);
+}
+
+void pn_texture_image(const pn_texture *t, pn_image *out) {
+  const format_info *info = find_format(t->format);
+  *out = (pn_image){t->id, t->target, t->format, t->width, t->height, t->layers, info ? info->channels : 0};
+}
+
+void pn_bind_texture(pn_gpu *gpu, int unit, GLenum target, pn_gl texture, bool own_parameters) {
+  GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);
+  GL(gpu, BindTexture)(target, texture);
+  GL(gpu, BindSampler)((GLuint)unit, own_parameters ? 0 : gpu->sampler_nearest);
+}
+
+/* ---- passes ---- */
+
+static void attach(pn_gpu *gpu, GLenum point, const pn_attachment *a) {
+  if (a->texture && a->target == GL_TEXTURE_2D_ARRAY)
+    GL(gpu, FramebufferTextureLayer)(GL_DRAW_FRAMEBUFFER, point, a->texture, a->level, a->layer);
+  else
+    GL(gpu, FramebufferTexture2D)(GL_DRAW_FRAMEBUFFER, point, GL_TEXTURE_2D, a->texture, a->level);
+}
+
+static pn_result attach_all(pn_gpu *gpu, const pn_pass *pass) {
+  static const GLenum all[2] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+  GL(gpu, BindFramebuffer)(GL_DRAW_FRAMEBUFFER, gpu->framebuffer);
+  GLenum draw[2];
+  for (int i = 0; i < 2; i++) {
+    attach(gpu, all[i], &pass->color[i]);
+    draw[i] = pass->color[i].texture ? all[i] : GL_NONE;
+  }
+  attach(gpu, GL_DEPTH_ATTACHMENT, &pass->depth);
+  GL(gpu, DrawBuffers)(2, draw);
+  GLenum status = GL(gpu, CheckFramebufferStatus)(GL_DRAW_FRAMEBUFFER);
+  if (status == GL_FRAMEBUFFER_COMPLETE) return PN_OK;
+  return pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_FRAMEBUFFER, "this device cannot draw into that format (0x%x)", status);
+}
+
+static void set_depth(pn_gpu *gpu, const pn_pass *pass) {
+  if (!pass->depth.texture) return;
+  GL(gpu, Enable)(GL_DEPTH_TEST);
+  GL(gpu, DepthMask)(GL_TRUE);
+  if (pass->depth_clamp) GL(gpu, Enable)(GL_DEPTH_CLAMP);
+  if (pass->depth_range[1] > 0) GL(gpu, DepthRange)(pass->depth_range[0], pass->depth_range[1]);
+  if (pass->depth_use == PN_DEPTH_WRITE) {
+    GL(gpu, DepthFunc)(GL_ALWAYS);
+    return;
+  }
+  bool farthest = pass->depth_use == PN_DEPTH_FARTHEST;
+  GL(gpu, DepthFunc)(farthest ? GL_GREATER : GL_LESS);
+  GLfloat nothing = farthest ? 0.0f : 1.0f;
+  GL(gpu, ClearBufferfv)(GL_DEPTH, 0, &nothing);
+}
+
+pn_result pn_pass_begin(pn_gpu *gpu, const pn_pass *pass) {
+  pn_state_neutral(gpu);
+  pn_result result = attach_all(gpu, pass);
+  if (result != PN_OK) return result;
+  GL(gpu, Viewport)(0, 0, pass->width, pass->height);
+  set_depth(gpu, pass);
+  if (pass->faces == PN_FACES_FRONT || pass->faces == PN_FACES_BACK) {
+    GL(gpu, Enable)(GL_CULL_FACE);
+    GL(gpu, CullFace)(pass->faces == PN_FACES_FRONT ? GL_BACK : GL_FRONT);
+  }
+  return PN_OK;
+}
+
+void pn_draw_screen(pn_gpu *gpu) {
+  GL(gpu, BindVertexArray)(gpu->vertex_array);
+  GL(gpu, DrawArrays)(GL_TRIANGLES, 0, 3);
+}
+
+pn_result pn_screen_begin(pn_gpu *gpu, const pn_pass *pass, const pn_program *program) {
+  pn_result result = pn_pass_begin(gpu, pass);
+  if (result == PN_OK) GL(gpu, UseProgram)(program->id);
+  return result;
+}
+
+/* ---- uniform buffers ---- */
+
+pn_result pn_uniform_buffer_set(pn_gpu *gpu, pn_uniform_buffer *buffer, const void *data, size_t bytes) {
+  if (!buffer->id) {
+    pn_result result = pn_memory_take(gpu, bytes);
+    if (result != PN_OK) return result;
+    GL(gpu, GenBuffers)(1, &buffer->id);
+    buffer->bytes = bytes;
+  }
+  GL(gpu, BindBuffer)(GL_UNIFORM_BUFFER, buffer->id);
+  GL(gpu, BufferData)(GL_UNIFORM_BUFFER, (GLsizeiptr)bytes, data, GL_STREAM_DRAW);
+  return PN_OK;
+}
+
+void pn_uniform_buffer_free(pn_gpu *gpu, pn_uniform_buffer *buffer, bool abandon) {
+  if (!buffer->id) return;
+  if (!abandon) GL(gpu, DeleteBuffers)(1, &buffer->id);
+  pn_memory_give(gpu, buffer->bytes);
+  memset(buffer, 0, sizeof *buffer);
+}

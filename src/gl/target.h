@@ -1,0 +1,60 @@
+/* Textures the library owns, and passes that draw into them. */
+#ifndef PN_GL_TARGET_H
+#define PN_GL_TARGET_H
+
+#include "gl/program.h"
+
+typedef struct {
+  pn_gl id; /* 0: none */
+  GLenum target, format;
+  int width, height, layers, levels;
+  size_t bytes;
+} pn_texture;
+
+/* A texture of that shape, its contents undefined; sampling is nearest, clamped, without comparison. If texture already has that shape nothing happens.
+ * The old one is freed only once the new one exists. layers 0: 2D; else a 2D array. */
+pn_result pn_texture_shape(pn_gpu *gpu, pn_texture *texture, GLenum format, int width, int height, int layers, int levels);
+void pn_texture_free(pn_gpu *gpu, pn_texture *texture, bool abandon);
+void pn_texture_image(const pn_texture *texture, pn_image *out);
+
+/* Binds a texture for the passes that follow, with the library's nearest sampler (or none: the texture's own parameters). */
+void pn_bind_texture(pn_gpu *gpu, int unit, GLenum target, pn_gl texture, bool own_parameters);
+
+/* One image to draw into: level 0.. of a texture, and a layer when it is an array. */
+typedef struct {
+  pn_gl texture;
+  GLenum target;
+  int level, layer;
+} pn_attachment;
+
+typedef enum { PN_DEPTH_NONE = 0, PN_DEPTH_NEAREST, PN_DEPTH_FARTHEST, PN_DEPTH_WRITE } pn_depth_use;
+
+/* Everything a pass depends on; pn_pass_begin sets all of it and leaves nothing to what was there before. */
+typedef struct {
+  pn_attachment color[2]; /* texture 0: none */
+  pn_attachment depth;
+  int width, height;
+  pn_depth_use depth_use; /* with depth: which surface stays; the image is cleared to 'nothing there' first */
+  pn_faces faces;         /* 0 = any */
+  GLdouble depth_range[2]; /* both 0: 0 to 1 */
+  bool depth_clamp;
+} pn_pass;
+
+pn_result pn_pass_begin(pn_gpu *gpu, const pn_pass *pass);
+/* A triangle that covers the target. The program and its uniforms are set by the caller. */
+void pn_draw_screen(pn_gpu *gpu);
+/* pn_pass_begin, the program in use: the usual start of a full-screen pass. */
+pn_result pn_screen_begin(pn_gpu *gpu, const pn_pass *pass, const pn_program *program);
+
+/* A uniform buffer of the library's, updated whole. */
+typedef struct { pn_gl id; size_t bytes; } pn_uniform_buffer;
+pn_result pn_uniform_buffer_set(pn_gpu *gpu, pn_uniform_buffer *buffer, const void *data, size_t bytes);
+void pn_uniform_buffer_free(pn_gpu *gpu, pn_uniform_buffer *buffer, bool abandon);
+
+/* Accounts for bytes in GL against the host's limit; pn_memory_give takes them off again. */
+pn_result pn_memory_take(pn_gpu *gpu, size_t bytes);
+void pn_memory_give(pn_gpu *gpu, size_t bytes);
+/* Looks whether the driver ran out of memory since the last look; the bytes were not taken then. */
+pn_result pn_memory_check(pn_gpu *gpu, size_t bytes);
+
+#endif

@@ -1,0 +1,276 @@
+#include "maps/fit.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Casters nearer to a rectangle than this part of the farthest caster's distance are taken to be that far: the map's depth has to reach both. Such a caster
+ * is then seen a little too far from the light; what it hides, (s_Q - s_R) / (w_Q - w_R), hardly changes with w_Q that large. */
+static const double nearest_share = 1.0 / 256.0;
+/* Bounds are put on a grid of this many steps, at least, across the map. */
+static const double snap_steps = 64;
+/* A map that opens wider than this is split. */
+static const double tile_opening = 120, tile_angle = 60; /* degrees */
+
+typedef struct {
+  const pn_fit_request *request;
+  pn_matrix light_from_scene;
+  double z_max;   /* first look: the farthest caster */
+  double z_floor; /* rectangle: nearer casters are taken to be here */
+  bool any, clamped;
+  double least[3], most[3]; /* of the casters that count, (s', t', w) */
+} fitting;
+
+static void to_light(const fitting *f, const double corners[8][3], double out[8][3]) {
+  for (int i = 0; i < 8; i++) pn_matrix_point(&f->light_from_scene, corners[i], out[i]);
+}
+
+/* ---- distances ---- */
+
+static bool too_far(const fitting *f, const double p[8][3]) {
+  double range = f->request->range, least = INFINITY;
+  for (int i = 0; i < 8; i++) least = fmin(least, p[i][2]);
+  return range > 0 && !f->request->frame->sun && least > range;
+}
+
+static void look_at_distance(void *user, const double corners[8][3]) {
+  fitting *f = user;
+  double p[8][3];
+  to_light(f, corners, p);
+  if (too_far(f, (const double(*)[3])p)) return;
+  for (int i = 0; i < 8; i++) f->z_max = fmax(f->z_max, p[i][2]);
+}
+
+/* ---- one box ---- */
+
+typedef struct { double least[3], most[3]; bool any; } span3;
+
+static void span_add(span3 *span, const fitting *f, const double p[3]) {
+  double m[3];
+  pn_map_point(p, f->request->frame->sun, m);
+  for (int i = 0; i < 2; i++) m[i] -= f->request->shear[i] * m[2];
+  for (int i = 0; i < 3; i++) {
+    span->least[i] = fmin(span->least[i], m[i]);
+    span->most[i] = fmax(span->most[i], m[i]);
+  }
+  span->any = true;
+}
+
+/* The box's part before the light: corners, and where its edges meet the floor. */
+static span3 box_span(const fitting *f, const double p[8][3]) {
+  span3 span = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, false};
+  bool sun = f->request->frame->sun;
+  for (int i = 0; i < 8; i++) {
+    if (sun || p[i][2] >= f->z_floor) span_add(&span, f, p[i]);
+    for (int axis = 0; axis < 3 && !sun; axis++) {
+      int j = i | 1 << axis;
+      double a = p[i][2] - f->z_floor, b = p[j][2] - f->z_floor;
+      if (j == i || (a < 0) == (b < 0)) continue;
+      double t = a / (a - b), at[3];
+      for (int c = 0; c < 3; c++) at[c] = p[i][c] + t * (p[j][c] - p[i][c]);
+      at[2] = f->z_floor;
+      span_add(&span, f, at);
+    }
+  }
+  return span;
+}
+
+/* Cuts the span down to what can shadow the visible region: false when nothing is left. A caster at w reaches receivers within A (w - w_R). */
+static bool cut_to_visible(const fitting *f, span3 *span) {
+  const pn_region *visible = f->request->visible;
+  if (!visible) return true;
+  double reach = span->most[2] - visible->least[2];
+  if (!(reach > 0)) return false;
+  for (int i = 0; i < 2; i++) {
+    double shear = f->request->shear[i];
+    double grow = (f->request->frame->extent[i] + fabs(shear)) * reach; /* a sheared map lies within the light's reach too */
+    double low = fmin(visible->least[i] - shear * visible->least[2], visible->least[i] - shear * visible->most[2]);
+    double high = fmax(visible->most[i] - shear * visible->least[2], visible->most[i] - shear * visible->most[2]);
+    span->least[i] = fmax(span->least[i], low - grow);
+    span->most[i] = fmin(span->most[i], high + grow);
+    if (!(span->least[i] <= span->most[i])) return false;
+  }
+  return true;
+}
+
+static void add_box(void *user, const double corners[8][3]) {
+  fitting *f = user;
+  double p[8][3];
+  to_light(f, corners, p);
+  if (too_far(f, (const double(*)[3])p)) return;
+  span3 span = box_span(f, (const double(*)[3])p);
+  if (!span.any || !cut_to_visible(f, &span)) return;
+  for (int i = 0; i < 3; i++) {
+    f->least[i] = fmin(f->least[i], span.least[i]);
+    f->most[i] = fmax(f->most[i], span.most[i]);
+  }
+  f->any = true;
+}
+
+/* ---- the given box ---- */
+
+static void fit_given(fitting *f) {
+  const float *g = f->request->given;
+  double corners[8][3], p[8][3];
+  for (int i = 0; i < 8; i++)
+    for (int c = 0; c < 3; c++) corners[i][c] = i >> c & 1 ? g[3 + c] : g[c];
+  to_light(f, (const double(*)[3])corners, p);
+  span3 span = box_span(f, (const double(*)[3])p);
+  for (int i = 0; i < 2 && span.any; i++) {
+    f->least[i] = span.least[i];
+    f->most[i] = span.most[i];
+  }
+}
+
+/* ---- snapping ---- */
+
+/* The step for an extent: a power of two, so that steps of neighbouring extents share their grid. */
+static double snap_step(double extent) { return exp2(ceil(log2(extent / snap_steps))); }
+
+static void snap_range(double *low, double *high) {
+  double extent = *high - *low;
+  if (!(extent > 0)) return;
+  double step = snap_step(extent);
+  *low = floor(*low / step) * step;
+  *high = ceil(*high / step) * step;
+}
+
+/* Distances snap to eighths of their power of two. */
+static double snap_distance(double z, bool up) {
+  int exponent;
+  double mantissa = frexp(z, &exponent) * 16;
+  return ldexp((up ? floor(mantissa) + 1 : ceil(mantissa) - 1) / 16, exponent);
+}
+
+/* w_near above, w_far strictly below every caster. */
+static void snap_depth(const fitting *f, pn_fit_result *out) {
+  double w_low = f->least[2], w_high = f->most[2];
+  if (f->request->frame->sun) {
+    double extent = fmax(w_high - w_low, 1e-6 * (fabs(w_high) + fabs(w_low)) + 1e-30), step = snap_step(extent);
+    out->w_near = (ceil(w_high / step) + 1) * step;
+    out->w_far = (floor(w_low / step) - 1) * step;
+  } else {
+    out->w_near = 1 / snap_distance(1 / w_high, false);
+    out->w_far = 1 / snap_distance(1 / w_low, true);
+  }
+}
+
+/* ---- borders and tiles ---- */
+
+/* One empty texel on each side, as far as the map has that many. */
+static void add_border(double *low, double *high, int texels) {
+  double border = texels > 2 ? (*high - *low) / (texels - 2) : 0;
+  *low -= border;
+  *high += border;
+}
+
+static int tiles_along(double low, double high) {
+  const double degree = 0.017453292519943295;
+  double opening = (atan(high) - atan(low)) / degree;
+  return opening > tile_opening ? (int)ceil(opening / tile_angle) : 1;
+}
+
+/* Tiles open by equal angles. */
+static double tile_edge(double low, double high, int i, int count) {
+  if (i == 0) return low;
+  if (i == count) return high;
+  return tan(atan(low) + (atan(high) - atan(low)) * i / count);
+}
+
+static void make_tiles(const pn_fit_request *request, pn_fit_result *out) {
+  const double *b = out->bounds;
+  bool split = !request->frame->sun && !request->given;
+  int columns = split ? tiles_along(b[0], b[2]) : 1, rows = split ? tiles_along(b[1], b[3]) : 1;
+  out->tiles = columns * rows;
+  for (int i = 0; i < out->tiles; i++) {
+    double *tile = out->tile[i];
+    int x = i % columns, y = i / columns;
+    tile[0] = tile_edge(b[0], b[2], x, columns);
+    tile[2] = tile_edge(b[0], b[2], x + 1, columns);
+    tile[1] = tile_edge(b[1], b[3], y, rows);
+    tile[3] = tile_edge(b[1], b[3], y + 1, rows);
+    if (request->given) continue;
+    add_border(&tile[0], &tile[2], request->width);
+    add_border(&tile[1], &tile[3], request->height);
+  }
+}
+
+/* A caster seen exactly from its side has no extent along one axis; the map needs one. */
+static void widen_flat(double *low, double *high, double other_extent) {
+  double least = fmax(1e-6 * fmax(fabs(*low), fabs(*high)), fmax(1e-4 * other_extent, 1e-9));
+  if (*high - *low >= least) return;
+  double middle = 0.5 * (*low + *high);
+  *low = middle - 0.5 * least;
+  *high = middle + 0.5 * least;
+}
+
+static void clamp_opening(const fitting *f, pn_fit_result *out) {
+  for (int i = 0; i < 4 && !f->request->frame->sun; i++) {
+    double clamped = fmin(fmax(out->bounds[i], -PN_TANGENT_MAX), PN_TANGENT_MAX);
+    if (clamped != out->bounds[i]) out->clamped = true;
+    out->bounds[i] = clamped;
+  }
+}
+
+void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_request *request, pn_fit_result *out) {
+  fitting f = {.request = request, .light_from_scene = pn_light_from_scene(request->frame)};
+  for (int i = 0; i < 3; i++) {
+    f.least[i] = INFINITY;
+    f.most[i] = -INFINITY;
+  }
+  memset(out, 0, sizeof *out);
+  pn_casters_each_box(casters, groups, look_at_distance, &f);
+  f.z_floor = fmax(request->near_distance, nearest_share * f.z_max);
+  pn_casters_each_box(casters, groups, add_box, &f);
+  out->empty = !f.any;
+  if (out->empty) return;
+  if (request->given) fit_given(&f);
+  for (int i = 0; i < 2; i++) {
+    out->bounds[i] = f.least[i];
+    out->bounds[i + 2] = f.most[i];
+  }
+  clamp_opening(&f, out);
+  for (int i = 0; i < 2; i++) {
+    widen_flat(&out->bounds[i], &out->bounds[i + 2], f.most[1 - i] - f.least[1 - i]);
+    if (!request->given) snap_range(&out->bounds[i], &out->bounds[i + 2]);
+  }
+  clamp_opening(&f, out);
+  snap_depth(&f, out);
+  make_tiles(request, out);
+}
+
+/* ---- regions ---- */
+
+pn_region pn_region_empty(void) {
+  return (pn_region){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+}
+
+static void region_add(pn_region *region, const double m[3]) {
+  for (int i = 0; i < 3; i++) {
+    region->least[i] = fmin(region->least[i], m[i]);
+    region->most[i] = fmax(region->most[i], m[i]);
+  }
+}
+
+/* Corners stay homogeneous, so that those of an infinite frustum need no case of their own. */
+void pn_region_add_frustum(pn_region *region, const pn_frame *frame, const pn_matrix *scene_from_clip, double depth_near) {
+  pn_matrix light_from_scene = pn_light_from_scene(frame);
+  pn_matrix light_from_clip = pn_matrix_multiply(&light_from_scene, scene_from_clip);
+  bool behind = false;
+  for (int i = 0; i < 8; i++) {
+    double clip[4] = {i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : depth_near, 1}, h[4];
+    pn_matrix_apply(&light_from_clip, clip, h);
+    if (h[3] < 0)
+      for (int c = 0; c < 4; c++) h[c] = -h[c];
+    double divisor = frame->sun ? h[3] : h[2];
+    if (!(divisor > 1e-9 * (fabs(h[0]) + fabs(h[1]) + fabs(h[2])))) {
+      behind = true; /* behind the light, or at infinity under a sun: no bound from this corner */
+      continue;
+    }
+    double m[3] = {h[0] / divisor, h[1] / divisor, frame->sun ? -h[2] / divisor : h[3] / divisor};
+    region_add(region, m);
+  }
+  if (!behind) return;
+  double everywhere[2][3] = {{-1e30, -1e30, frame->sun ? -1e30 : 0}, {1e30, 1e30, 1e30}};
+  region_add(region, everywhere[0]);
+  region_add(region, everywhere[1]);
+}

@@ -1,0 +1,39 @@
+/* Which part of light map space a light's maps cover: fitted to what casts, snapped, and split into tiles where the light sees
+ * too wide. docs/space.md explains the steps. */
+#ifndef PN_MAPS_FIT_H
+#define PN_MAPS_FIT_H
+
+#include "casters/casters.h"
+#include "space/space.h"
+
+/* Bounds in (s, t, w) of the receivers that count; anything goes where least > most. */
+typedef struct { double least[3], most[3]; } pn_region;
+
+enum { PN_TILES_MAX = 9 };
+
+typedef struct {
+  bool empty;   /* nothing casts here */
+  bool clamped; /* opened past 170 degrees */
+  double bounds[4]; /* s0, t0, s1, t1 */
+  double w_near, w_far;
+  int tiles;
+  double tile[PN_TILES_MAX][4]; /* with a border of one texel, except for a fit that is given */
+} pn_fit_result;
+
+typedef struct {
+  const pn_frame *frame;
+  double shear[2];          /* the light's point the map is drawn from, for both kinds of light */
+  double near_distance, range;
+  int width, height;
+  const float *given;       /* PN_FIT_GIVEN's box, or NULL */
+  const pn_region *visible; /* receivers that casters must be able to shadow, or NULL */
+} pn_fit_request;
+
+void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_request *request, pn_fit_result *out);
+
+/* An empty region, for adding to; and the region that a camera's frustum covers. scene_from_clip: inverse of projection * view, with depth_near, depth_far in
+ * the projection's own convention. */
+pn_region pn_region_empty(void);
+void pn_region_add_frustum(pn_region *region, const pn_frame *frame, const pn_matrix *scene_from_clip, double depth_near);
+
+#endif

@@ -1,0 +1,226 @@
+#include "maps/maps.h"
+
+#include <math.h>
+#include <string.h>
+
+int pn_want_layers(const pn_maps_want *want) { return want->near_layers + (want->farthest ? 1 : 0); }
+
+/* ---- textures ---- */
+
+static int pyramid_size(int size) {
+  int power = 1;
+  while (power < size) power *= 2;
+  return power > 1 ? power / 2 : 1;
+}
+
+static int level_count(int width, int height) {
+  int count = 1;
+  while (width > 1 || height > 1) {
+    width = width > 1 ? width / 2 : 1;
+    height = height > 1 ? height / 2 : 1;
+    count++;
+  }
+  return count;
+}
+
+pn_result pn_maps_shape(pn_gpu *gpu, pn_maps *maps, const pn_maps_want *want, int count, int width, int height) {
+  int layers = pn_want_layers(want);
+  pn_result result = pn_texture_shape(gpu, &maps->depth, GL_DEPTH_COMPONENT32F, width, height, layers * count, 1);
+  for (int i = 0; i < 2 && result == PN_OK; i++) {
+    if (want->near_layers > 1)
+      result = pn_texture_shape(gpu, &maps->peel[i], GL_DEPTH_COMPONENT32F, width, height, 0, 1);
+    else
+      pn_texture_free(gpu, &maps->peel[i], false);
+  }
+  if (result == PN_OK && want->range) {
+    int w = pyramid_size(width), h = pyramid_size(height);
+    result = pn_texture_shape(gpu, &maps->pyramid, GL_RG32F, w, h, layers * count, level_count(w, h));
+  } else if (result == PN_OK) {
+    pn_texture_free(gpu, &maps->pyramid, false);
+  }
+  if (result != PN_OK) return result;
+  maps->want = *want;
+  maps->layers = layers;
+  return PN_OK;
+}
+
+void pn_maps_free(pn_gpu *gpu, pn_maps *maps, bool abandon) {
+  pn_texture_free(gpu, &maps->depth, abandon);
+  pn_texture_free(gpu, &maps->pyramid, abandon);
+  pn_texture_free(gpu, &maps->peel[0], abandon);
+  pn_texture_free(gpu, &maps->peel[1], abandon);
+  memset(maps, 0, sizeof *maps);
+}
+
+/* ---- drawing ---- */
+
+typedef struct {
+  pn_gpu *gpu;
+  pn_maps *maps;
+  const pn_map_draw *draw;
+  pn_matrix clip_from_scene;
+} drawing;
+
+static pn_attachment layer_of(const drawing *d, int layer) {
+  const pn_texture *depth = &d->maps->depth;
+  return (pn_attachment){depth->id, depth->target, 0, d->draw->map * d->maps->layers + layer};
+}
+
+static pn_result draw_layer(const drawing *d, pn_attachment target, int layer, bool farthest, pn_gl peel) {
+  const pn_maps_want *want = &d->maps->want;
+  int width = d->maps->depth.width, height = d->maps->depth.height;
+  pn_faces faces = farthest ? want->far_faces : want->near_faces;
+  pn_pass pass = {.depth = target, .width = width, .height = height, .faces = faces, .depth_clamp = true,
+                  .depth_use = farthest ? PN_DEPTH_FARTHEST : PN_DEPTH_NEAREST,
+                  .depth_range = {PN_DEPTH_MARGIN, 1 - PN_DEPTH_MARGIN}};
+  pn_result result = pn_pass_begin(d->gpu, &pass);
+  if (result != PN_OK) return result;
+  pn_caster_draw draw = {d->clip_from_scene, d->draw->groups, faces ? faces : PN_FACES_ANY, peel, layer, width, height};
+  return pn_casters_draw_pass(d->draw->casters, &draw);
+}
+
+/* Peeling draws into textures of its own and copies: reading one layer of an array while drawing another is undefined in GL 3.3. */
+static void copy_layer(const drawing *d, const pn_texture *from, int layer) {
+  pn_gpu *gpu = d->gpu;
+  pn_attachment to = layer_of(d, layer);
+  GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, gpu->read_framebuffer);
+  GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
+  GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, from->id, 0);
+  GL(gpu, ReadBuffer)(GL_NONE);
+  GL(gpu, BindFramebuffer)(GL_DRAW_FRAMEBUFFER, gpu->framebuffer);
+  GL(gpu, FramebufferTextureLayer)(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, to.texture, 0, to.layer);
+  GL(gpu, Disable)(GL_SCISSOR_TEST);
+  GL(gpu, BlitFramebuffer)
+  (0, 0, from->width, from->height, 0, 0, from->width, from->height, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+}
+
+static pn_result draw_peeled(const drawing *d) {
+  pn_gl previous = 0;
+  for (int layer = 0; layer < d->maps->want.near_layers; layer++) {
+    const pn_texture *target = &d->maps->peel[layer & 1];
+    pn_attachment attachment = {target->id, target->target, 0, 0};
+    pn_result result = draw_layer(d, attachment, layer, false, previous);
+    if (result != PN_OK) return result;
+    copy_layer(d, target, layer);
+    previous = target->id;
+  }
+  return PN_OK;
+}
+
+pn_result pn_maps_draw(pn_gpu *gpu, pn_maps *maps, const pn_map_draw *draw) {
+  drawing d = {gpu, maps, draw, {{0}}};
+  pn_matrix clip = pn_clip_from_light(draw->frame->sun, draw->bounds, draw->w_near, draw->w_far, draw->shear);
+  pn_matrix light = pn_light_from_scene(draw->frame);
+  d.clip_from_scene = pn_matrix_multiply(&clip, &light);
+  pn_result result = PN_OK;
+  if (maps->want.near_layers == 1) result = draw_layer(&d, layer_of(&d, 0), 0, false, 0);
+  if (maps->want.near_layers > 1) result = draw_peeled(&d);
+  if (result == PN_OK && maps->want.farthest)
+    result = draw_layer(&d, layer_of(&d, maps->layers - 1), maps->layers - 1, true, 0);
+  return result;
+}
+
+/* ---- the range pyramid ---- */
+
+static pn_result range_program(pn_gpu *gpu, bool first, const pn_program **out) {
+  pn_program_key key = {"shaders/screen.vert.glsl", "maps/range.frag.glsl", NULL, first ? "PN_FIRST 1\n" : "PN_FIRST 0\n"};
+  return pn_program_get(gpu, &key, out);
+}
+
+static pn_result draw_range(pn_gpu *gpu, pn_maps *maps, int array_layer, int level) {
+  const pn_program *program;
+  pn_texture *pyramid = &maps->pyramid;
+  pn_result result = range_program(gpu, level == 0, &program);
+  if (result != PN_OK) return result;
+  int width = pyramid->width >> level, height = pyramid->height >> level;
+  pn_pass pass = {.color = {{pyramid->id, pyramid->target, level, array_layer}}, .width = width ? width : 1,
+                  .height = height ? height : 1};
+  result = pn_screen_begin(gpu, &pass, program);
+  if (result != PN_OK) return result;
+  if (level > 0) { /* only the level below may be read, so that reading and drawing never meet */
+    pn_bind_texture(gpu, PN_UNIT_RANGE, pyramid->target, pyramid->id, true);
+    GL(gpu, TexParameteri)(pyramid->target, GL_TEXTURE_BASE_LEVEL, level - 1);
+    GL(gpu, TexParameteri)(pyramid->target, GL_TEXTURE_MAX_LEVEL, level - 1);
+  }
+  /* Base level shifts what the shader calls level 0. */
+  GLint source[4] = {array_layer, 0, array_layer / maps->layers, array_layer % maps->layers};
+  GL(gpu, Uniform4iv)(pn_uniform(program, "pn_source"), 1, source);
+  pn_draw_screen(gpu);
+  return PN_OK;
+}
+
+pn_result pn_maps_build_range(pn_gpu *gpu, pn_maps *maps) {
+  pn_texture *pyramid = &maps->pyramid;
+  pn_bind_texture(gpu, PN_UNIT_MAPS, maps->depth.target, maps->depth.id, false);
+  pn_result result = PN_OK;
+  for (int level = 0; level < pyramid->levels && result == PN_OK; level++)
+    for (int layer = 0; layer < pyramid->layers && result == PN_OK; layer++)
+      result = draw_range(gpu, maps, layer, level);
+  pn_bind_texture(gpu, PN_UNIT_RANGE, pyramid->target, pyramid->id, true);
+  GL(gpu, TexParameteri)(pyramid->target, GL_TEXTURE_BASE_LEVEL, 0);
+  GL(gpu, TexParameteri)(pyramid->target, GL_TEXTURE_MAX_LEVEL, pyramid->levels - 1);
+  return result;
+}
+
+pn_result pn_maps_prepare(pn_gpu *gpu, const pn_maps_want *want) {
+  const pn_program *program;
+  pn_result result = pn_casters_prepare(gpu, false);
+  if (result == PN_OK && want->near_layers > 1) result = pn_casters_prepare(gpu, true);
+  for (int first = 0; first < 2 && result == PN_OK && want->range; first++) result = range_program(gpu, first, &program);
+  return result;
+}
+
+/* ---- the uniform block ---- */
+
+static void axis_row(const pn_matrix *light_from_scene, int row, float out[4]) {
+  for (int c = 0; c < 4; c++) out[c] = (float)light_from_scene->m[4 * c + row];
+}
+
+/* Vertices are snapped to the raster's sub-pixels, half a step at most on each axis; twice that for the arithmetic around it. */
+static float raster_error(const pn_gpu *gpu) { return (float)ldexp(1.0, -gpu->can.subpixel_bits); }
+
+void pn_block_frame(pn_light_block *block, const pn_frame *frame, const pn_gpu *gpu, int count, int layers, int width,
+                    int height) {
+  memset(block, 0, sizeof *block);
+  pn_matrix light_from_scene = pn_light_from_scene(frame);
+  axis_row(&light_from_scene, 0, block->scene_u);
+  axis_row(&light_from_scene, 1, block->scene_v);
+  axis_row(&light_from_scene, 2, block->scene_z);
+  block->extent[0] = (float)frame->extent[0];
+  block->extent[1] = (float)frame->extent[1];
+  block->extent[2] = frame->sun ? 1.0f : 0.0f;
+  block->maps[0] = (float)count;
+  block->maps[1] = (float)layers;
+  block->maps[2] = (float)width;
+  block->maps[3] = (float)height;
+  block->range[0] = -INFINITY;
+  block->range[1] = INFINITY;
+  block->range[3] = raster_error(gpu);
+}
+
+void pn_block_map(pn_light_block *block, const pn_gpu *gpu, const pn_map_draw *draw, int width, int height) {
+  float base_error = raster_error(gpu);
+  double scale[2];
+  pn_depth_scale(draw->w_near, draw->w_far, scale);
+  float *bounds = block->map_bounds[draw->map], *depth = block->map_depth[draw->map];
+  bounds[0] = (float)draw->bounds[0];
+  bounds[1] = (float)draw->bounds[1];
+  bounds[2] = (float)(width / (draw->bounds[2] - draw->bounds[0]));
+  bounds[3] = (float)(height / (draw->bounds[3] - draw->bounds[1]));
+  depth[0] = (float)scale[0];
+  depth[1] = (float)scale[1];
+  depth[2] = (float)draw->shear[0];
+  depth[3] = (float)draw->shear[1];
+  for (int i = 0; i < 2; i++) { /* bounds and positions in float, far from the origin of the map */
+    double low = draw->bounds[i], high = draw->bounds[i + 2];
+    double steps = (i ? height : width) * fmax(fabs(low), fabs(high)) / (high - low);
+    block->range[3] = fmaxf(block->range[3], base_error + (float)(steps * 0x1p-22));
+  }
+  block->range[0] = fmaxf(block->range[0], (float)draw->w_near);
+  block->range[1] = fminf(block->range[1], (float)draw->w_far);
+  /* A stored depth near 1 has steps of 2^-24; interpolation adds a few. Turning it into w rounds at the size of w. */
+  float error = (float)((draw->w_near - draw->w_far) * 0x1p-21 + fmax(fabs(draw->w_near), fabs(draw->w_far)) * 0x1p-22);
+  block->range[2] = fmaxf(block->range[2], error);
+}
+
+_Static_assert(sizeof(pn_light_block) == (6 + 2 + 2 * PN_MAPS_MAX) * 16, "std140 layout of pn_LightData");

@@ -1,0 +1,60 @@
+/* Images seen from the light: layers of depth over the tiles of a fit, and the range pyramid above them. */
+#ifndef PN_MAPS_MAPS_H
+#define PN_MAPS_MAPS_H
+
+#include "maps/fit.h"
+
+enum { PN_MAPS_MAX = 16, PN_LAYERS_MAX = 16, PN_PARAMETERS_MAX = 8 };
+
+/* What a technique wants to have drawn. In the array texture, a map's layers are: near surfaces first, nearest to farther, then the farthest one. */
+typedef struct {
+  int near_layers;      /* peeled layers from the nearest; 0..PN_LAYERS_MAX */
+  bool farthest;        /* the farthest surface, as the last layer */
+  pn_faces near_faces, far_faces; /* which surfaces count: PN_FACES_ANY where it does not matter */
+  bool range;           /* the range pyramid of every layer */
+} pn_maps_want;
+
+/* The uniform block of maps.glsl, std140. */
+typedef struct {
+  float scene_u[4], scene_v[4], scene_z[4];
+  float extent[4];
+  float maps[4];
+  float range[4];
+  float parameters[PN_PARAMETERS_MAX];
+  float map_bounds[PN_MAPS_MAX][4];
+  float map_depth[PN_MAPS_MAX][4];
+} pn_light_block;
+
+typedef struct {
+  pn_texture depth, pyramid, peel[2];
+  pn_maps_want want;
+  pn_fit_result fit;
+  int layers;           /* of each map */
+  pn_light_block block; /* all but the parameters */
+  bool ready;
+} pn_maps;
+
+int pn_want_layers(const pn_maps_want *want);
+
+/* Shapes the textures for what is wanted. */
+pn_result pn_maps_shape(pn_gpu *gpu, pn_maps *maps, const pn_maps_want *want, int count, int width, int height);
+/* Draws one map (tile or light sample) into its layers. */
+typedef struct {
+  const pn_frame *frame;
+  pn_casters *casters;
+  uint32_t groups;
+  int map;             /* its place in the list */
+  double bounds[4], w_near, w_far, shear[2];
+} pn_map_draw;
+pn_result pn_maps_draw(pn_gpu *gpu, pn_maps *maps, const pn_map_draw *draw);
+/* Fills the pyramid from what was drawn; the block must be bound. */
+pn_result pn_maps_build_range(pn_gpu *gpu, pn_maps *maps);
+pn_result pn_maps_prepare(pn_gpu *gpu, const pn_maps_want *want);
+/* The parts of the block that do not depend on single maps. count: of maps. */
+void pn_block_frame(pn_light_block *block, const pn_frame *frame, const pn_gpu *gpu, int count, int layers, int width,
+                    int height);
+/* Adds a map to the block. */
+void pn_block_map(pn_light_block *block, const pn_gpu *gpu, const pn_map_draw *draw, int width, int height);
+void pn_maps_free(pn_gpu *gpu, pn_maps *maps, bool abandon);
+
+#endif

@@ -1,0 +1,24 @@
+/* What a light and a receiver have together: the visibility buffer, and its times. */
+#ifndef PN_PAIR_H
+#define PN_PAIR_H
+
+#include "context.h"
+
+typedef struct pn_pair {
+  pn_object *light, *receiver;
+  pn_texture image;   /* the result */
+  pn_texture low;     /* at reduced resolution, before it is brought up */
+  pn_texture work[2]; /* a technique's own */
+  bool drawn;
+  pn_clock clock;
+  struct pn_pair *next;
+} pn_pair;
+
+/* NULL when there is none. */
+pn_pair *pn_pair_find(const pn_object *light, const pn_object *receiver);
+/* Finds or makes it; NULL when out of memory. */
+pn_pair *pn_pair_get(pn_object *light, pn_object *receiver);
+/* Frees every pair that the object is part of. */
+void pn_pairs_drop(const pn_object *object, bool abandon);
+
+#endif

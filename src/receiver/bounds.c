@@ -1,0 +1,76 @@
+/* What a camera sees, as bounds in light map space: reduced on the GPU and read back. */
+#include "receiver/receiver.h"
+
+enum { BLOCK = 16 }; /* PN_BLOCK of bounds.frag.glsl */
+
+/* Least and most, of one step. */
+static pn_result shape(pn_gpu *gpu, pn_texture images[2], int width, int height) {
+  pn_result result = pn_texture_shape(gpu, &images[0], GL_RGBA32F, width, height, 0, 1);
+  return result == PN_OK ? pn_texture_shape(gpu, &images[1], GL_RGBA32F, width, height, 0, 1) : result;
+}
+
+static pn_result step(pn_receiver *receiver, const pn_frame *frame, const pn_texture *from, const pn_texture *to) {
+  pn_gpu *gpu = &receiver->object.context->gpu;
+  const char *defines = from                         ? "PN_FIRST 0\n"
+                        : receiver->desc.mask_texture ? "PN_FIRST 1\nPN_MASK 1\n"
+                                                      : "PN_FIRST 1\nPN_MASK 0\n";
+  pn_program_key key = {"shaders/screen.vert.glsl", "receiver/bounds.frag.glsl", NULL, defines};
+  const pn_program *program;
+  pn_result result = pn_program_get(gpu, &key, &program);
+  if (result != PN_OK) return result;
+  pn_pass pass = {.color = {{to[0].id, GL_TEXTURE_2D, 0, 0}, {to[1].id, GL_TEXTURE_2D, 0, 0}},
+                  .width = to->width, .height = to->height};
+  result = pn_screen_begin(gpu, &pass, program);
+  if (result != PN_OK) return result;
+  if (from) {
+    pn_bind_texture(gpu, PN_UNIT_WORK, GL_TEXTURE_2D, from[0].id, false);
+    pn_bind_texture(gpu, PN_UNIT_RANGE, GL_TEXTURE_2D, from[1].id, false);
+  } else {
+    pn_receiver_bind(receiver, program, frame, 1);
+  }
+  pn_draw_screen(gpu);
+  return PN_OK;
+}
+
+static void read_back(pn_gpu *gpu, const pn_texture images[2], pn_region *region) {
+  float values[2][4];
+  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
+  GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, gpu->read_framebuffer);
+  GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, 0, 0);
+  for (int i = 0; i < 2; i++) {
+    GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, images[i].id, 0);
+    GL(gpu, ReadBuffer)(GL_COLOR_ATTACHMENT0);
+    GL(gpu, ReadPixels)(0, 0, 1, 1, GL_RGBA, GL_FLOAT, values[i]);
+  }
+  GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
+  if (values[0][3] < 0.5f) return; /* nothing is seen */
+  for (int i = 0; i < 3; i++) {
+    if (values[0][i] < region->least[i]) region->least[i] = values[0][i];
+    if (values[1][i] > region->most[i]) region->most[i] = values[1][i];
+  }
+}
+
+static int blocks(int size) { return (size + BLOCK - 1) / BLOCK; }
+
+pn_result pn_receiver_bounds(pn_receiver *receiver, const pn_frame *frame, pn_region *region) {
+  pn_gpu *gpu = &receiver->object.context->gpu;
+  pn_texture *from = NULL, *to = receiver->bounds, *other = receiver->bounds + 2;
+  int width = receiver->desc.width, height = receiver->desc.height;
+  do {
+    width = blocks(width);
+    height = blocks(height);
+    pn_result result = shape(gpu, to, width, height);
+    if (result == PN_OK) result = step(receiver, frame, from, to);
+    if (result != PN_OK) return result;
+    from = to;
+    to = other;
+    other = from;
+  } while (width > 1 || height > 1);
+  read_back(gpu, from, region);
+  return PN_OK;
+}
+
+void pn_receiver_frustum(const pn_receiver *receiver, const pn_frame *frame, pn_region *region) {
+  const pn_receiver_desc *d = &receiver->desc;
+  pn_region_add_frustum(region, frame, &receiver->scene_from_clip, d->depth_zero_to_one ? 0 : -1);
+}

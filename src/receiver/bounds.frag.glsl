@@ -1,0 +1,42 @@
+// Bounds, in (s, t, w), of the surfaces a camera sees: each pixel of the target covers PN_BLOCK x PN_BLOCK of the source. The first step reads
+// the receiver's depth, further ones what the last one wrote.
+#include "shaders/precision.glsl"
+#define PN_BLOCK 16
+#if PN_FIRST
+#define PN_NORMALS 1 // only positions are wanted here
+#include "receiver/receiver.glsl"
+#include "receiver/surface.glsl"
+#else
+uniform highp sampler2D pn_work;
+uniform highp sampler2D pn_range;
+#endif
+layout(location = 0) out vec4 pn_least; // least s, t, w; 1 where anything was seen
+layout(location = 1) out vec4 pn_most;
+
+void main() {
+  ivec2 base = ivec2(gl_FragCoord.xy) * PN_BLOCK;
+  vec4 least = vec4(1e30, 1e30, 1e30, 0.0);
+  vec4 most = vec4(-1e30, -1e30, -1e30, 0.0);
+  for (int y = 0; y < PN_BLOCK; y++)
+    for (int x = 0; x < PN_BLOCK; x++) {
+      ivec2 at = base + ivec2(x, y);
+#if PN_FIRST
+      if (!pn_view_has(at) || !pn_receives(at)) continue;
+      vec3 p;
+      vec3 error;
+      pn_position(at, pn_depth_at(at), p, error);
+      if (!pn_is_sun(0) && p.z <= 0.0) continue;
+      vec3 m = pn_map_point(p, pn_is_sun(0));
+      least = vec4(min(least.xyz, m), 1.0);
+      most = vec4(max(most.xyz, m), 1.0);
+#else
+      if (any(greaterThanEqual(at, textureSize(pn_work, 0)))) continue;
+      vec4 l = texelFetch(pn_work, at, 0);
+      if (l.w < 0.5) continue;
+      least = vec4(min(least.xyz, l.xyz), 1.0);
+      most = vec4(max(most.xyz, texelFetch(pn_range, at, 0).xyz), 1.0);
+#endif
+    }
+  pn_least = least;
+  pn_most = most;
+}

@@ -1,0 +1,48 @@
+// A receiver: the surface point that a pixel shows, in the light's space, with the errors its numbers carry. Those errors are the only
+// biases there are: derived from the precision of depth and map, not chosen.
+#include "maps/maps.glsl"
+
+struct pn_Receiver {
+  vec3 p;              // light frame
+  vec3 n;              // unit geometric normal, light frame, turned to the side that is seen and shaded
+  vec3 m;              // (s, t, w)
+  float k;             // pn_plane_offset
+  float epsilon_w;     // how much w may be wrong, map and receiver together
+  float epsilon_plane; // how much pn_plane_front may be wrong
+  float sigma;         // angle by which the normal may be wrong, radians
+  float reach;         // factor of dw in the lever that sigma acts on
+};
+
+// position: light frame. error: bound on its error, component by component. normal: unit, light frame.
+pn_Receiver pn_receiver(int light, vec3 position, vec3 error, vec3 normal, float sigma) {
+  bool sun = pn_is_sun(light);
+  pn_Receiver r;
+  r.p = position;
+  r.n = normal;
+  r.m = pn_map_point(position, sun);
+  r.k = pn_plane_offset(normal, position, sun);
+  r.sigma = sigma + 1e-6;
+  r.reach = sun ? 1.0 : length(position);
+  float scale = sun ? 1.0 : r.m.z;
+  float map_error = pn_lights[light].range.z;
+  vec2 texel = 1.0 / pn_lights[light].map_bounds[0].zw;
+  r.epsilon_w = map_error + scale * (sun ? 1.0 : r.m.z) * error.z;
+  r.epsilon_plane = scale * dot(abs(normal), error) + abs(r.k) * map_error +
+                    pn_lights[light].range.w * dot(abs(normal.xy), texel);
+  return r;
+}
+
+// Whether a stored sample at q = (s, t, w) can hide any of the light from the receiver: nearer, and in front of the tangent plane.
+bool pn_blocks(pn_Receiver r, vec3 q) {
+  vec3 d = q - r.m;
+  float lever = abs(d.x) + abs(d.y) + r.reach * abs(d.z);
+  return d.z > r.epsilon_w && pn_plane_front(r.n, r.k, q, r.m) > r.epsilon_plane + r.sigma * lever;
+}
+
+// Receivers that no part of the light shines on: facing away, or behind a rectangle.
+bool pn_unlit(int light, pn_Receiver r) {
+  return (!pn_is_sun(light) && r.p.z <= 0.0) || dot(abs(r.n.xy), pn_extent(light)) - r.k <= 0.0;
+}
+
+// Receivers nearer to the light than every caster see all of it.
+bool pn_above_casters(int light, pn_Receiver r) { return r.m.z >= pn_lights[light].range.x; }

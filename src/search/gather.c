@@ -1,0 +1,57 @@
+#include "search/gather.h"
+
+#include <stdio.h>
+
+static pn_result gather_program(pn_gpu *gpu, const char *shader, const char *receiver_defines, bool upsample,
+                                const pn_program **out) {
+  char defines[128];
+  snprintf(defines, sizeof defines, "%sPN_UPSAMPLE %d\n", receiver_defines, upsample);
+  pn_program_key key = {"shaders/screen.vert.glsl", "receiver/visibility.glsl", shader, defines};
+  return pn_program_get(gpu, &key, out);
+}
+
+static pn_result draw(const pn_gathering *g, pn_attachment target, int width, int height, bool upsample, int scale) {
+  char defines[PN_RECEIVER_DEFINES];
+  const pn_program *program;
+  pn_receiver_defines(g->receiver, defines);
+  pn_result result = gather_program(g->gpu, g->shader, defines, upsample, &program);
+  if (result != PN_OK) return result;
+  pn_pass pass = {.color = {target}, .width = width, .height = height};
+  result = pn_screen_begin(g->gpu, &pass, program);
+  if (result != PN_OK) return result;
+  pn_receiver_bind(g->receiver, program, g->frame, scale);
+  pn_bind_texture(g->gpu, PN_UNIT_MAPS, GL_TEXTURE_2D_ARRAY, g->maps->depth.id, false);
+  if (g->maps->pyramid.id) pn_bind_texture(g->gpu, PN_UNIT_RANGE, GL_TEXTURE_2D_ARRAY, g->maps->pyramid.id, false);
+  if (upsample) pn_bind_texture(g->gpu, PN_UNIT_WORK, GL_TEXTURE_2D, g->pair->low.id, false);
+  pn_draw_screen(g->gpu);
+  return PN_OK;
+}
+
+pn_result pn_gather(const pn_gathering *g) {
+  const pn_receiver_desc *view = &g->receiver->desc;
+  if (view->scale == 1) {
+    pn_result result = draw(g, g->target, view->width, view->height, false, 1);
+    pn_clock_mark(g->gpu, &g->pair->clock, "visibility");
+    return result;
+  }
+  int width, height;
+  pn_receiver_low_size(g->receiver, &width, &height);
+  pn_result result = pn_texture_shape(g->gpu, &g->pair->low, GL_R32F, width, height, 0, 1);
+  if (result != PN_OK) return result;
+  pn_attachment low = {g->pair->low.id, GL_TEXTURE_2D, 0, 0};
+  result = draw(g, low, width, height, false, view->scale);
+  pn_clock_mark(g->gpu, &g->pair->clock, "visibility");
+  if (result == PN_OK) result = draw(g, g->target, view->width, view->height, true, view->scale);
+  pn_clock_mark(g->gpu, &g->pair->clock, "upsample");
+  return result;
+}
+
+pn_result pn_gather_prepare(pn_gpu *gpu, const char *shader) {
+  static const char *const receivers[] = {"PN_NORMALS 0\nPN_MASK 0\n", "PN_NORMALS 1\nPN_MASK 0\n"};
+  pn_result result = PN_OK;
+  for (int i = 0; i < 2 && result == PN_OK; i++) {
+    const pn_program *program;
+    result = gather_program(gpu, shader, receivers[i], false, &program);
+  }
+  return result;
+}

@@ -1,0 +1,23 @@
+/* The frame around gathering techniques: one full-screen pass, or two at reduced resolution. */
+#ifndef PN_SEARCH_GATHER_H
+#define PN_SEARCH_GATHER_H
+
+#include "maps/maps.h"
+#include "pair.h"
+#include "receiver/receiver.h"
+
+typedef struct {
+  pn_gpu *gpu;
+  const char *shader; /* the technique's, with pn_technique() */
+  const pn_frame *frame;
+  pn_maps *maps;
+  pn_receiver *receiver;
+  pn_pair *pair;
+  pn_attachment target;
+} pn_gathering;
+
+pn_result pn_gather(const pn_gathering *gathering);
+/* Compiles for receivers as most hosts set them: with and without normals, full resolution. */
+pn_result pn_gather_prepare(pn_gpu *gpu, const char *shader);
+
+#endif

@@ -1,0 +1,81 @@
+#include "space/matrix.h"
+
+#include <math.h>
+#include <string.h>
+
+pn_matrix pn_matrix_identity(void) {
+  return (pn_matrix){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+}
+
+pn_matrix pn_matrix_from_floats(const float m[16]) {
+  pn_matrix a;
+  for (int i = 0; i < 16; i++) a.m[i] = m[i];
+  return a;
+}
+
+void pn_matrix_to_floats(const pn_matrix *a, float out[16]) {
+  for (int i = 0; i < 16; i++) out[i] = (float)a->m[i];
+}
+
+pn_matrix pn_matrix_multiply(const pn_matrix *a, const pn_matrix *b) {
+  pn_matrix out;
+  for (int column = 0; column < 4; column++) pn_matrix_apply(a, b->m + 4 * column, out.m + 4 * column);
+  return out;
+}
+
+void pn_matrix_apply(const pn_matrix *a, const double in[4], double out[4]) {
+  double result[4];
+  for (int row = 0; row < 4; row++)
+    result[row] = a->m[row] * in[0] + a->m[4 + row] * in[1] + a->m[8 + row] * in[2] + a->m[12 + row] * in[3];
+  memcpy(out, result, sizeof result);
+}
+
+void pn_matrix_point(const pn_matrix *a, const double in[3], double out[3]) {
+  double point[4] = {in[0], in[1], in[2], 1}, result[4];
+  pn_matrix_apply(a, point, result);
+  memcpy(out, result, 3 * sizeof *out);
+}
+
+/* Gauss-Jordan with row pivoting on [a | 1]; rows are scaled first, so that units do not decide what singular means. */
+bool pn_matrix_invert(const pn_matrix *a, pn_matrix *out) {
+  double rows[4][8] = {{0}};
+  for (int r = 0; r < 4; r++) {
+    double largest = 0;
+    for (int c = 0; c < 4; c++) {
+      rows[r][c] = a->m[4 * c + r];
+      if (!isfinite(rows[r][c])) return false;
+      largest = fmax(largest, fabs(rows[r][c]));
+    }
+    if (largest == 0) return false;
+    rows[r][4 + r] = 1;
+    for (int c = 0; c < 8; c++) rows[r][c] /= largest;
+  }
+  for (int c = 0; c < 4; c++) {
+    int pivot = c;
+    for (int r = c + 1; r < 4; r++)
+      if (fabs(rows[r][c]) > fabs(rows[pivot][c])) pivot = r;
+    if (fabs(rows[pivot][c]) < 1e-300) return false;
+    double swap[8];
+    memcpy(swap, rows[c], sizeof swap);
+    memcpy(rows[c], rows[pivot], sizeof swap);
+    memcpy(rows[pivot], swap, sizeof swap);
+    double scale = 1 / rows[c][c];
+    for (int k = 0; k < 8; k++) rows[c][k] *= scale;
+    for (int r = 0; r < 4; r++) {
+      double factor = r == c ? 0 : rows[r][c];
+      for (int k = 0; k < 8 && factor != 0; k++) rows[r][k] -= factor * rows[c][k];
+    }
+  }
+  for (int r = 0; r < 4; r++)
+    for (int c = 0; c < 4; c++) {
+      out->m[4 * c + r] = rows[r][4 + c];
+      if (!isfinite(rows[r][4 + c])) return false;
+    }
+  return true;
+}
+
+bool pn_floats_finite(const float *values, int count) {
+  for (int i = 0; i < count; i++)
+    if (!isfinite(values[i])) return false;
+  return true;
+}

@@ -1,0 +1,13 @@
+#include "techniques/technique.h"
+
+static void want(const double *values, pn_maps_want *out) {
+  (void)values;
+  *out = (pn_maps_want){.near_layers = 1};
+}
+
+const pn_technique_class pn_technique_hard = {
+    .table = {.name = "hard", .title = "hard shadow", .help = "one map, one comparison: the shadow of the light's centre",
+              .forward = 1, .self_shadows = 1},
+    .want = want,
+    .shader = "techniques/hard/hard.glsl",
+};

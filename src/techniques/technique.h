@@ -1,0 +1,44 @@
+/* What a technique is. To add one: a folder with its table and shader, and a line in registry.c. */
+#ifndef PN_TECHNIQUES_TECHNIQUE_H
+#define PN_TECHNIQUES_TECHNIQUE_H
+
+#include "maps/maps.h"
+#include "pair.h"
+#include "receiver/receiver.h"
+
+/* Everything one call of pn_visibility has: the same for every technique. */
+typedef struct {
+  pn_gpu *gpu;
+  const pn_light_desc *desc;
+  const pn_frame *frame;
+  const double *values;       /* parameters, in the order of the table */
+  pn_maps *maps;              /* drawn by pn_maps_update as the technique wanted them */
+  pn_uniform_buffer *block;   /* the light's, bound */
+  pn_casters *casters;        /* of the last pn_maps_update; NULL when they are gone */
+  uint32_t groups;
+  const pn_region *visible;   /* what that update was fitted to, or NULL */
+  pn_receiver *receiver;
+  pn_pair *pair;
+  pn_attachment target;       /* where visibility goes */
+} pn_visibility_request;
+
+typedef struct {
+  pn_technique table;
+  /* The maps it needs with these values. */
+  void (*want)(const double *values, pn_maps_want *out);
+  /* A gathering technique is a shader with pn_technique(); it needs nothing else. */
+  const char *shader;
+  /* Others draw by themselves, and compile by themselves. */
+  pn_result (*draw)(const pn_visibility_request *request);
+  pn_result (*prepare)(pn_gpu *gpu, const double *values);
+} pn_technique_class;
+
+/* The class behind a table that the library handed out. */
+const pn_technique_class *pn_technique_class_of(const pn_technique *table);
+
+/* Sets one of values by the parameter's name; false, with the message that fits, when there is none or the value is not one of its own. */
+bool pn_parameter_set(const pn_technique *table, const char *name, double value, double *values, pn_message *message);
+
+extern const pn_technique_class pn_technique_hard, pn_technique_pcf, pn_technique_pcss, pn_technique_average;
+
+#endif
