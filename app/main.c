@@ -9,7 +9,7 @@
 
 const struct command_row commands[] = {
     {"render", COMMAND_RENDER, command_render, 1, 1, "SCENE [options]", "one picture of SCENE under one technique"},
-    {"compare", COMMAND_COMPARE, command_missing, 1, 1, "SCENE [options]", "several techniques against the reference"},
+    {"compare", COMMAND_COMPARE, command_compare, 1, 1, "SCENE [options]", "several techniques against the reference"},
     {"study", COMMAND_STUDY, command_missing, 1, 1000, "NAME... | all", "the papers' experiments, as CSV, plots and a report"},
     {"bench", COMMAND_BENCH, command_bench, 0, 1, "[SCENE] [options]", "stage times"},
     {"view", COMMAND_VIEW, command_missing, 0, 1, "[SCENE] [options]", "interactive window"},

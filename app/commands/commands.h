@@ -16,6 +16,7 @@ extern const struct command_row commands[];
 extern const int command_count;
 
 int command_render(const struct options *options);
+int command_compare(const struct options *options);
 int command_bench(const struct options *options);
 int command_list(const struct options *options);
 int command_info(const struct options *options);

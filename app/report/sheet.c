@@ -55,7 +55,7 @@ static int fits(const struct layout *layout) {
   return layout->size[0] <= SIDE_MAX && layout->size[1] <= SIDE_MAX && (double)layout->size[0] * layout->size[1] <= PIXELS_MAX;
 }
 
-/* The number of columns nearest to ASPECT; tiles shrink when even that is too large. Returns 0 when nothing fits. */
+/* The number of columns nearest to ASPECT with few empty cells; tiles shrink when even that is too large. Returns 0 when nothing fits. */
 static int choose_layout(struct layout *best, const struct report *report) {
   int picture[2] = {report->width, report->height}, cells = report->technique_count + 1;
   for (int tile_max = TILE_MAX; tile_max >= TILE_MIN; tile_max /= 2) {
@@ -63,7 +63,8 @@ static int choose_layout(struct layout *best, const struct report *report) {
     for (int columns = 1; columns <= cells && columns <= 200; columns++) {
       struct layout layout;
       lay_out(&layout, picture, tile_max, columns, cells);
-      double off = fabs(log((double)layout.size[0] / layout.size[1] / ASPECT));
+      double empty = (double)(layout.rows * columns - cells) / cells;
+      double off = fabs(log((double)layout.size[0] / layout.size[1] / ASPECT)) + 0.5 * empty;
       if (fits(&layout) && off < distance) {
         distance = off;
         *best = layout;
