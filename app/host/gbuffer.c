@@ -215,7 +215,7 @@ static float *read_depth(const struct gbuffer *g) {
 }
 
 static double eye_distance(const struct gbuffer *g, double depth) {
-  return g->projection[14] / (-(2 * depth - 1) - g->projection[10]);
+  return g->projection[14] / (2 * depth - 1 + g->projection[10]);
 }
 
 /* Planes around everything first, then close around what that showed: the depth buffer's precision is what the surface's positions have. */

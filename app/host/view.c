@@ -33,7 +33,7 @@ static void prepare(const struct gbuffer *g, struct unprojection *u) {
 }
 
 static void unproject(const struct unprojection *u, double ndc_x, double ndc_y, double depth, float out[3]) {
-  double w = u->p14 / (-(2 * depth - 1) - u->p10);
+  double w = u->p14 / (2 * depth - 1 + u->p10);
   double eye[3] = {ndc_x * w / u->p0, ndc_y * w / u->p5, -w};
   v3_sub(eye, u->translation, eye);
   for (int k = 0; k < 3; k++) out[k] = (float)v3_dot(u->inverse[k], eye);
