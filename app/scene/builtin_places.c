@@ -65,24 +65,36 @@ static double lattice(int x, int y) {
   return ((h ^ h >> 16) >> 8) / 16777216.0;
 }
 
+/* What the lattice point's random slope contributes at an offset from it. */
+static double slope(int i, int j, double x, double y) {
+  double angle = 2 * 3.14159265358979323846 * lattice(i, j);
+  return cos(angle) * x + sin(angle) * y;
+}
+
+/* Gradient noise, about -0.7 .. 0.7. */
 static double smooth_noise(double x, double y) {
   double fx = floor(x), fy = floor(y), u = x - fx, v = y - fy;
   int i = (int)fx, j = (int)fy;
-  u = u * u * (3 - 2 * u);
-  v = v * v * (3 - 2 * v);
-  double low = lattice(i, j) * (1 - u) + lattice(i + 1, j) * u, high = lattice(i, j + 1) * (1 - u) + lattice(i + 1, j + 1) * u;
-  return low * (1 - v) + high * v;
+  double a = u * u * u * (u * (6 * u - 15) + 10), b = v * v * v * (v * (6 * v - 15) + 10);
+  double low = slope(i, j, u, v) * (1 - a) + slope(i + 1, j, u - 1, v) * a;
+  double high = slope(i, j + 1, u, v - 1) * (1 - a) + slope(i + 1, j + 1, u - 1, v - 1) * a;
+  return low * (1 - b) + high * b;
 }
 
+/* Ridged: valleys are wide, crests sharp. Each octave is turned, so that no lattice shows. */
 static double terrain_height(double x, double z) {
-  double sum = 0, size = 16, frequency = 1.0 / 34;
-  for (int octave = 0; octave < 5; octave++) {
-    double n = 1 - fabs(2 * smooth_noise(x * frequency + 11.3 * octave, z * frequency + 5.7 * octave) - 1);
-    sum += size * n * n;
-    size *= 0.46;
-    frequency *= 2.03;
+  double sum = 0, size = 14;
+  x = x / 55 + 0.31;
+  z = z / 55 + 0.17;
+  for (int octave = 0; octave < 6; octave++) {
+    double n = 1 - 1.6 * fabs(smooth_noise(x + 11.3 * octave, z + 5.7 * octave));
+    sum += size * n * fabs(n);
+    size *= 0.42;
+    double turned = 1.62 * x - 1.2 * z;
+    z = 1.2 * x + 1.62 * z;
+    x = turned;
   }
-  return sum - 8;
+  return sum - 10;
 }
 
 int build_terrain(struct scene *scene, int count) {
@@ -103,11 +115,11 @@ int build_terrain(struct scene *scene, int count) {
   if (shape_add_to(&shape, scene, 1, 1)) return -1;
   struct light *light = &scene->setup.light;
   light->shape = PN_LIGHT_SUN;
-  set3(light->center, 90, 62, -40);
+  set3(light->center, 80, 78, -50);
   set3(light->target, 0, 0, 0);
   light->size[0] = light->size[1] = 2;
   struct camera *camera = &scene->setup.camera;
-  set3(camera->position, 0, 62, 92);
+  set3(camera->position, 0, 66, 92);
   set3(camera->target, 0, 2, 8);
   return 0;
 }

@@ -132,6 +132,10 @@ static void send_import_error(int fd) {
     if (!(*text == '\n' || *text == '\r') || (length && line[length - 1] != ' ')) line[length++] = *text == '\n' || *text == '\r' ? ' ' : *text;
   while (length && line[length - 1] == ' ') length--;
   line[length] = 0;
+  if (strstr(line, "bad_alloc") || strstr(line, "bad_array_new_length")) {
+    send_text(fd, RECORD_ERROR, "importing it takes more memory than a file of its size should need; it is probably damaged");
+    return;
+  }
   send_text(fd, RECORD_ERROR, "cannot be imported: %s", line);
 }
 
