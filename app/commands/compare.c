@@ -20,7 +20,7 @@
 /* One technique's share of the work. */
 struct entry {
   const char *spec;
-  char *file; /* name in --save-dir */
+  char *file;       /* name in --save-dir */
   cJSON *described; /* technique, label, parameters */
   pn_light *light;
   float *visibility;
@@ -46,18 +46,21 @@ struct comparison {
 
 static size_t pixel_count(const struct comparison *c) { return (size_t)c->view->width * (size_t)c->view->height; }
 
-/* ---- before the work: what can be wrong with the request ------------------------------------------------------ */
+/* ---- before the work: what can be wrong with the request --------------------------------------------------------- */
 
 static int check_save_dir(const char *path) {
   struct stat info;
-  if (mkdir(path, 0777) != 0 && errno != EEXIST) return work_error("cannot make the directory %s: %s", path, strerror(errno));
-  if (stat(path, &info) != 0 || !S_ISDIR(info.st_mode)) return work_error("cannot write into %s: it is not a directory", path);
+  if (mkdir(path, 0777) != 0 && errno != EEXIST)
+    return work_error("cannot make the directory %s: %s", path, strerror(errno));
+  if (stat(path, &info) != 0 || !S_ISDIR(info.st_mode))
+    return work_error("cannot write into %s: it is not a directory", path);
   if (access(path, W_OK | X_OK) != 0) return work_error("cannot write into %s: %s", path, strerror(errno));
   return STATUS_OK;
 }
 
 static int check_outputs(const struct options *o) {
-  if (o->output && image_kind_of(o->output) != IMAGE_PNG) return input_error("--output %s: the comparison sheet is a .png file", o->output);
+  if (o->output && image_kind_of(o->output) != IMAGE_PNG)
+    return input_error("--output %s: the comparison sheet is a .png file", o->output);
   int status = o->output ? output_check(o->output) : STATUS_OK;
   if (!status && o->html) status = output_check(o->html);
   if (!status && o->json) status = output_check(o->json);
@@ -106,7 +109,7 @@ static int make_entries(struct comparison *c) {
   return STATUS_OK;
 }
 
-/* ---- the work ----------------------------------------------------------------------------------------------------- */
+/* ---- the work ---------------------------------------------------------------------------------------------------- */
 
 /* Times first: all techniques in turn, then one frame each whose visibility is kept. */
 static int draw_techniques(struct comparison *c) {
@@ -143,9 +146,11 @@ static int measure_errors(struct comparison *c) {
   size_t shadow_pixels = 0;
   for (int i = 0; i < c->count; i++) {
     struct error_statistics *error = &c->techniques[i].error;
-    if (!error_measure(c->truth.visibility, c->entries[i].visibility, c->mask, pixel_count(c), error)) return memory_error();
+    if (!error_measure(c->truth.visibility, c->entries[i].visibility, c->mask, pixel_count(c), error))
+      return memory_error();
     if (error->not_finite)
-      warning("%s: %zu shadow pixels have no finite visibility: its errors are undefined", c->entries[i].spec, error->not_finite);
+      warning("%s: %zu shadow pixels have no finite visibility: its errors are undefined", c->entries[i].spec,
+              error->not_finite);
     shadow_pixels += error->pixels;
   }
   if (!shadow_pixels) warning("no shadow falls on what the camera sees and the light faces: errors are undefined");
@@ -177,14 +182,15 @@ static int make_pictures(struct comparison *c) {
   return STATUS_OK;
 }
 
-/* ---- the report ------------------------------------------------------------------------------------------------------ */
+/* ---- the report -------------------------------------------------------------------------------------------------- */
 
 static void describe_setup(struct comparison *c) {
   const struct setup *setup = &c->scene->setup;
   int sun = setup->light.shape == PN_LIGHT_SUN;
-  int n = snprintf(c->facts, sizeof c->facts, "%s %g x %g%s   %d x %d pixels", sun ? "sun" : "rectangle light", setup->light.size[0],
-                   setup->light.size[1], sun ? " degrees" : "", c->view->width, c->view->height);
-  if (setup->map[0]) n += snprintf(c->facts + n, sizeof c->facts - (size_t)n, "   map %d x %d", setup->map[0], setup->map[1]);
+  int n = snprintf(c->facts, sizeof c->facts, "%s %g x %g%s   %d x %d pixels", sun ? "sun" : "rectangle light",
+                   setup->light.size[0], setup->light.size[1], sun ? " degrees" : "", c->view->width, c->view->height);
+  if (setup->map[0])
+    n += snprintf(c->facts + n, sizeof c->facts - (size_t)n, "   map %d x %d", setup->map[0], setup->map[1]);
   if (setup->split) snprintf(c->facts + n, sizeof c->facts - (size_t)n, "   split");
 }
 
@@ -199,7 +205,8 @@ static void describe_technique(struct comparison *c, int index) {
   t->time_median = timing->median;
   t->time_least = timing->min;
   t->time_most = timing->max;
-  for (int i = 0; i < timing->stage_count; i++) e->stages[i] = (struct report_stage){timing->stages[i].name, timing->stages[i].median};
+  for (int i = 0; i < timing->stage_count; i++)
+    e->stages[i] = (struct report_stage){timing->stages[i].name, timing->stages[i].median};
   t->stages = e->stages;
   t->stage_count = timing->stage_count;
   t->visibility = e->visibility;
@@ -226,7 +233,7 @@ static void describe(struct comparison *c) {
                               .technique_count = c->count};
 }
 
-/* ---- outputs --------------------------------------------------------------------------------------------------------- */
+/* ---- outputs ----------------------------------------------------------------------------------------------------- */
 
 /* With JSON on standard output, people's lines make room. */
 static FILE *people(const struct options *o) { return o->json && strcmp(o->json, "-") == 0 ? stderr : stdout; }
@@ -298,7 +305,8 @@ static int write_outputs(struct comparison *c) {
   const struct options *o = c->options;
   FILE *file = people(o);
   const struct truth *truth = &c->truth;
-  fprintf(file, "reference: %d ray%s a pixel, %.1f s", o->reference_samples, o->reference_samples == 1 ? "" : "s", truth->seconds);
+  fprintf(file, "reference: %d ray%s a pixel, %.1f s", o->reference_samples, o->reference_samples == 1 ? "" : "s",
+          truth->seconds);
   if (truth->from_cache) fputs(", from the cache", file);
   else if (truth->seconds > 0) fprintf(file, ", %.1f million rays a second", truth->rays / truth->seconds / 1e6);
   fputs("\n\n", file);
@@ -311,7 +319,7 @@ static int write_outputs(struct comparison *c) {
   return status;
 }
 
-/* ---- the command -------------------------------------------------------------------------------------------------------- */
+/* ---- the command ------------------------------------------------------------------------------------------------- */
 
 static int compare(struct comparison *c) {
   const struct options *o = c->options;
@@ -323,7 +331,8 @@ static int compare(struct comparison *c) {
   if (!status) status = mark_pixels(c);
   if (!status) status = draw_techniques(c);
   if (!status)
-    status = truth_trace(c->scene, c->host.gbuffer, c->view, o->reference_samples, !o->given[OPTION_NO_CACHE], &c->truth);
+    status =
+        truth_trace(c->scene, c->host.gbuffer, c->view, o->reference_samples, !o->given[OPTION_NO_CACHE], &c->truth);
   if (!status) status = measure_errors(c);
   if (!status && (o->output || o->html)) status = make_pictures(c);
   if (status) return status;

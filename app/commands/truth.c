@@ -29,7 +29,8 @@ static void free_inputs(struct inputs *in) {
 }
 
 static void fill_textures(struct inputs *in, const struct scene *scene) {
-  static const enum reference_wrap wraps[] = {[WRAP_REPEAT] = REFERENCE_REPEAT, [WRAP_CLAMP] = REFERENCE_CLAMP, [WRAP_MIRROR] = REFERENCE_MIRROR};
+  static const enum reference_wrap wraps[] = {
+      [WRAP_REPEAT] = REFERENCE_REPEAT, [WRAP_CLAMP] = REFERENCE_CLAMP, [WRAP_MIRROR] = REFERENCE_MIRROR};
   for (int i = 0; i < scene->texture_count; i++) {
     const struct texture *t = &scene->textures[i];
     in->textures[i] = (struct reference_alpha){t->width, t->height, t->alpha, wraps[t->wrap_u], wraps[t->wrap_v]};
@@ -68,12 +69,12 @@ static void fill_light(struct reference_light *to, const struct light *light) {
 
 /* How far a point may lie from its surface.
  *
- *     depth       at eye distance z the window depth d, a float of 24 bits made by a few float operations, is off by 2^-22; z by that times
- *                 |dz/dd| = 2 z^2 / |P[14]|
- *     rasteriser  vertices are moved to a grid of 2^-bits pixels before they are filled, the surface with them by half a step; a pixel
- *                 is 2 z / (P[5] height) wide
+ *     depth       at eye distance z the window depth d, a float of 24 bits made by a few float operations, is off by
+ *                 2^-22; z by that times |dz/dd| = 2 z^2 / |P[14]|
+ *     rasteriser  vertices are moved to a grid of 2^-bits pixels before they are filled, the surface with them by
+ *                 half a step; a pixel is 2 z / (P[5] height) wide
  *
- * Both move the point by no more than that along the normal. Rounding of the coordinates is the tracer's own concern. */
+ * Both move the point by no more than that along the normal. Rounding of the coordinates is the tracer's concern. */
 static float point_error(const struct gbuffer *g, const float *p, double subpixel) {
   double z = -((double)g->view[2] * p[0] + (double)g->view[6] * p[1] + (double)g->view[10] * p[2] + g->view[14]);
   double depth = 0x1p-22 * 2 * z * z / fabs((double)g->projection[14]);
@@ -88,7 +89,8 @@ static void fill_points(struct inputs *in, const struct gbuffer *g, const struct
     const float *p = view->position + 3 * i;
     in->errors[i] = isfinite(p[0]) ? point_error(g, p, subpixel) : 0;
   }
-  in->points = (struct reference_points){view->width, view->height, view->position, view->normal, view->receives, in->errors};
+  in->points =
+      (struct reference_points){view->width, view->height, view->position, view->normal, view->receives, in->errors};
 }
 
 static int fill_inputs(struct inputs *in, const struct scene *scene, const struct gbuffer *g, const struct view *view) {
@@ -123,7 +125,8 @@ static int trace(const struct inputs *in, int samples, float *visibility, struct
 }
 
 /* From the cache, or traced and then kept there. */
-static int find_or_trace(const struct inputs *in, int samples, int use_cache, struct truth *out, struct reference_result *result) {
+static int find_or_trace(const struct inputs *in, int samples, int use_cache, struct truth *out,
+                         struct reference_result *result) {
   size_t count = (size_t)in->points.width * (size_t)in->points.height;
   char why[5000] = "";
   struct digest key = {{0}};
@@ -134,11 +137,13 @@ static int find_or_trace(const struct inputs *in, int samples, int use_cache, st
     if (*why) warning("%s", why);
   }
   int warned = *why != 0, status = trace(in, samples, out->visibility, result);
-  if (!status && use_cache && !cache_store(&key, count, out->visibility, result, why, sizeof why) && !warned) warning("%s", why);
+  if (!status && use_cache && !cache_store(&key, count, out->visibility, result, why, sizeof why) && !warned)
+    warning("%s", why);
   return status;
 }
 
-int truth_trace(const struct scene *scene, const struct gbuffer *g, const struct view *view, int samples, int use_cache, struct truth *out) {
+int truth_trace(const struct scene *scene, const struct gbuffer *g, const struct view *view, int samples, int use_cache,
+                struct truth *out) {
   memset(out, 0, sizeof *out);
   struct inputs in;
   struct reference_result result = {0, 0};

@@ -11,9 +11,9 @@ struct truth {
   int from_cache;
 };
 
-/* Traces from the points of view, which gbuffer was read into, with a progress bar. The GL context of gbuffer must be current. A cache that cannot be used
- * costs one warning. Exit status. */
-int truth_trace(const struct scene *scene, const struct gbuffer *gbuffer, const struct view *view, int samples, int use_cache,
-                struct truth *out);
+/* Traces from the points of view, which gbuffer was read into, with a progress bar. The GL context of gbuffer must be
+ * current. A cache that cannot be used costs one warning. Exit status. */
+int truth_trace(const struct scene *scene, const struct gbuffer *gbuffer, const struct view *view, int samples,
+                int use_cache, struct truth *out);
 
 #endif

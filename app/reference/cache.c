@@ -45,10 +45,10 @@ struct digest cache_key(const struct reference_casters *casters, const struct re
                         const struct reference_points *points, int samples) {
   struct hash hash;
   hash_begin(&hash);
-  int32_t head[6] = {REFERENCE_VERSION, samples, points->width, points->height, casters->mesh_count, casters->instance_count};
+  int32_t head[6] = {REFERENCE_VERSION,      samples, points->width, points->height, casters->mesh_count,
+                     casters->instance_count};
   hash_array(&hash, head, 6, sizeof head[0]);
-  for (int i = 0; i < casters->mesh_count; i++)
-    hash_mesh(&hash, &casters->meshes[i]);
+  for (int i = 0; i < casters->mesh_count; i++) hash_mesh(&hash, &casters->meshes[i]);
   for (int i = 0; i < casters->instance_count; i++) {
     int32_t mesh = casters->instances[i].mesh;
     hash_array(&hash, &mesh, 1, sizeof mesh);
@@ -77,19 +77,15 @@ static const char magic[24] = "penumbra visibility 1\n";
 int cache_directory(char *path, size_t size) {
   const char *base = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
   int length = -1;
-  if (base && base[0] == '/')
-    length = snprintf(path, size, "%s/penumbra/reference", base);
-  else if (home && home[0] == '/')
-    length = snprintf(path, size, "%s/.cache/penumbra/reference", home);
+  if (base && base[0] == '/') length = snprintf(path, size, "%s/penumbra/reference", base);
+  else if (home && home[0] == '/') length = snprintf(path, size, "%s/.cache/penumbra/reference", home);
   return length > 0 && (size_t)length < size;
 }
 
 static int file_path(const struct digest *key, char *path, size_t size) {
   char directory[PATH_BYTES], name[33];
-  if (!cache_directory(directory, sizeof directory))
-    return 0;
-  for (int i = 0; i < 16; i++)
-    snprintf(name + 2 * i, 3, "%02x", key->bytes[i]);
+  if (!cache_directory(directory, sizeof directory)) return 0;
+  for (int i = 0; i < 16; i++) snprintf(name + 2 * i, 3, "%02x", key->bytes[i]);
   return (size_t)snprintf(path, size, "%s/%s%s", directory, name, SUFFIX) < size;
 }
 
@@ -103,33 +99,33 @@ static struct digest checksum(const struct file_head *head, const float *visibil
 
 static int values_possible(const float *visibility, size_t count) {
   for (size_t i = 0; i < count; i++)
-    if (!(visibility[i] >= 0 && visibility[i] <= 1))
-      return 0;
+    if (!(visibility[i] >= 0 && visibility[i] <= 1)) return 0;
   return 1;
 }
 
 /* Returns 0 for a file that is not exactly what cache_store writes for this key. */
-static int read_file(FILE *file, const struct digest *key, size_t count, float *visibility, struct reference_result *result) {
+static int read_file(FILE *file, const struct digest *key, size_t count, float *visibility,
+                     struct reference_result *result) {
   struct file_head head;
   struct digest stored;
   if (fread(&head, sizeof head, 1, file) != 1 || memcmp(head.magic, magic, sizeof magic) != 0 ||
       memcmp(&head.key, key, sizeof *key) != 0 || head.count != count)
     return 0;
-  if (fread(visibility, sizeof(float), count, file) != count || fread(&stored, sizeof stored, 1, file) != 1 || fgetc(file) != EOF)
+  if (fread(visibility, sizeof(float), count, file) != count || fread(&stored, sizeof stored, 1, file) != 1 ||
+      fgetc(file) != EOF)
     return 0;
   struct digest found = checksum(&head, visibility);
-  if (memcmp(&found, &stored, sizeof stored) != 0 || !values_possible(visibility, count))
-    return 0;
+  if (memcmp(&found, &stored, sizeof stored) != 0 || !values_possible(visibility, count)) return 0;
   result->seconds = head.seconds;
   result->rays = head.rays;
   return isfinite(head.seconds) && head.seconds >= 0;
 }
 
-int cache_load(const struct digest *key, size_t count, float *visibility, struct reference_result *result, char *why, size_t why_size) {
+int cache_load(const struct digest *key, size_t count, float *visibility, struct reference_result *result, char *why,
+               size_t why_size) {
   char path[PATH_BYTES];
   why[0] = 0;
-  if (!file_path(key, path, sizeof path))
-    return 0; /* cache_store says so */
+  if (!file_path(key, path, sizeof path)) return 0; /* cache_store says so */
   /* Not blocking: a FIFO under that name must not hold the program. */
   int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) {
@@ -145,10 +141,8 @@ int cache_load(const struct digest *key, size_t count, float *visibility, struct
     return 0;
   }
   int good = read_file(file, key, count, visibility, result);
-  if (good)
-    futimens(descriptor, NULL); /* last used now; where that fails it is only removed earlier */
-  else
-    snprintf(why, why_size, "%s: damaged; the reference is traced again", path);
+  if (good) futimens(descriptor, NULL); /* last used now; where that fails it is only removed earlier */
+  else snprintf(why, why_size, "%s: damaged; the reference is traced again", path);
   fclose(file);
   return good;
 }
@@ -161,15 +155,12 @@ static int make_directories(const char *directory) {
     return 0;
   }
   for (char *slash = path + 1;; slash++) {
-    if (*slash != '/' && *slash != 0)
-      continue;
+    if (*slash != '/' && *slash != 0) continue;
     char kept = *slash;
     *slash = 0;
-    if (mkdir(path, 0700) != 0 && errno != EEXIST)
-      return 0;
+    if (mkdir(path, 0700) != 0 && errno != EEXIST) return 0;
     *slash = kept;
-    if (!kept)
-      return 1;
+    if (!kept) return 1;
   }
 }
 
@@ -212,10 +203,8 @@ int cache_store(const struct digest *key, size_t count, const float *visibility,
       errno = reason;
     }
   }
-  if (!stored)
-    snprintf(why, why_size, "%s: %s; the reference is not kept", directory, strerror(errno));
-  else
-    cache_trim(directory, CACHE_BYTES_MAX);
+  if (!stored) snprintf(why, why_size, "%s: %s; the reference is not kept", directory, strerror(errno));
+  else cache_trim(directory, CACHE_BYTES_MAX);
   return stored;
 }
 
@@ -229,10 +218,8 @@ struct entry {
 
 static int longest_unused_first(const void *a, const void *b) {
   const struct entry *x = a, *y = b;
-  if (x->used.tv_sec != y->used.tv_sec)
-    return x->used.tv_sec < y->used.tv_sec ? -1 : 1;
-  if (x->used.tv_nsec != y->used.tv_nsec)
-    return x->used.tv_nsec < y->used.tv_nsec ? -1 : 1;
+  if (x->used.tv_sec != y->used.tv_sec) return x->used.tv_sec < y->used.tv_sec ? -1 : 1;
+  if (x->used.tv_nsec != y->used.tv_nsec) return x->used.tv_nsec < y->used.tv_nsec ? -1 : 1;
   return strcmp(x->name, y->name);
 }
 
@@ -251,7 +238,8 @@ static size_t list_entries(DIR *directory, struct entry **out) {
   size_t count = 0, room = 0;
   for (struct dirent *item; (item = readdir(directory));) {
     struct stat status;
-    if (!is_ours(item->d_name) || fstatat(dirfd(directory), item->d_name, &status, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(status.st_mode))
+    if (!is_ours(item->d_name) || fstatat(dirfd(directory), item->d_name, &status, AT_SYMLINK_NOFOLLOW) != 0 ||
+        !S_ISREG(status.st_mode))
       continue;
     if (is_stale_temporary(item->d_name, &status)) {
       unlinkat(dirfd(directory), item->d_name, 0);
@@ -260,8 +248,7 @@ static size_t list_entries(DIR *directory, struct entry **out) {
     if (count == room) {
       room = room ? 2 * room : 64;
       struct entry *larger = realloc(*out, room * sizeof **out);
-      if (!larger)
-        break;
+      if (!larger) break;
       *out = larger;
     }
     struct entry *entry = &(*out)[count++];
@@ -274,18 +261,14 @@ static size_t list_entries(DIR *directory, struct entry **out) {
 
 void cache_trim(const char *path, unsigned long long bytes_max) {
   DIR *directory = opendir(path);
-  if (!directory)
-    return;
+  if (!directory) return;
   struct entry *entries = NULL;
   size_t count = list_entries(directory, &entries);
   unsigned long long bytes = 0;
-  for (size_t i = 0; i < count; i++)
-    bytes += entries[i].bytes;
-  if (count)
-    qsort(entries, count, sizeof *entries, longest_unused_first);
+  for (size_t i = 0; i < count; i++) bytes += entries[i].bytes;
+  if (count) qsort(entries, count, sizeof *entries, longest_unused_first);
   for (size_t i = 0; i < count && bytes > bytes_max; i++)
-    if (unlinkat(dirfd(directory), entries[i].name, 0) == 0)
-      bytes -= entries[i].bytes;
+    if (unlinkat(dirfd(directory), entries[i].name, 0) == 0) bytes -= entries[i].bytes;
   free(entries);
   closedir(directory);
 }

@@ -1,8 +1,9 @@
 /* cache.h: visibility that was traced before, on disk, because people compare the same view again and again.
  *
- * Files lie in $XDG_CACHE_HOME/penumbra/reference (~/.cache where that is unset or not absolute), one for each result, named by a hash of everything the
- * result depends on. They are written under another name and renamed; a checksum guards them; the longest unused ones go when
- * all together exceed CACHE_BYTES_MAX. Whatever goes wrong here costs time, never a result: the caller is told by a text. */
+ * Files lie in $XDG_CACHE_HOME/penumbra/reference (~/.cache where that is unset or not absolute), one for each
+ * result, named by a hash of everything the result depends on. They are written under another name and renamed; a
+ * checksum guards them; the longest unused ones go when all together exceed CACHE_BYTES_MAX. Whatever goes wrong here
+ * costs time, never a result: the caller is told by a text. */
 #ifndef PENUMBRA_APP_REFERENCE_CACHE_H
 #define PENUMBRA_APP_REFERENCE_CACHE_H
 
@@ -15,9 +16,10 @@
 struct digest cache_key(const struct reference_casters *casters, const struct reference_light *light,
                         const struct reference_points *points, int samples);
 
-/* Nonzero: visibility holds count values as they were stored, and *result what tracing them took. why: empty when there is simply no such
- * file, else one line about a cache that cannot be used. */
-int cache_load(const struct digest *key, size_t count, float *visibility, struct reference_result *result, char *why, size_t why_size);
+/* Nonzero: visibility holds count values as they were stored, and *result what tracing them took. why: empty when
+ * there is simply no such file, else one line about a cache that cannot be used. */
+int cache_load(const struct digest *key, size_t count, float *visibility, struct reference_result *result, char *why,
+               size_t why_size);
 
 /* Nonzero: stored. why as above. */
 int cache_store(const struct digest *key, size_t count, const float *visibility, const struct reference_result *result,

@@ -21,8 +21,7 @@ static inline void rounds(uint64_t v[4], int count) {
 
 static inline uint64_t little_endian(const uint8_t *bytes) {
   uint64_t word = 0;
-  for (int i = 0; i < 8; i++)
-    word |= (uint64_t)bytes[i] << (8 * i);
+  for (int i = 0; i < 8; i++) word |= (uint64_t)bytes[i] << (8 * i);
   return word;
 }
 
@@ -32,7 +31,8 @@ static inline void absorb(uint64_t v[4], uint64_t word) {
   v[0] ^= word;
 }
 
-/* The key is the one of the published test vectors: bytes 0 to 15. It guards against accidents, not against attackers. */
+/* The key is the one of the published test vectors: bytes 0 to 15. It guards against accidents, not against
+ * attackers. */
 void hash_begin(struct hash *hash) {
   const uint64_t key[2] = {0x0706050403020100u, 0x0f0e0d0c0b0a0908u};
   memset(hash, 0, sizeof *hash);
@@ -51,14 +51,11 @@ void hash_bytes(struct hash *hash, const void *bytes, size_t count) {
     memcpy(hash->rest + held, next, taken);
     next += taken;
     count -= taken;
-    if (held + taken < 8)
-      return;
+    if (held + taken < 8) return;
     absorb(hash->v, little_endian(hash->rest));
   }
-  for (; count >= 8; count -= 8, next += 8)
-    absorb(hash->v, little_endian(next));
-  if (count)
-    memcpy(hash->rest, next, count);
+  for (; count >= 8; count -= 8, next += 8) absorb(hash->v, little_endian(next));
+  if (count) memcpy(hash->rest, next, count);
 }
 
 struct digest hash_end(struct hash *hash) {
@@ -70,8 +67,7 @@ struct digest hash_end(struct hash *hash) {
   for (int half = 0; half < 2; half++) {
     rounds(hash->v, 4);
     uint64_t word = hash->v[0] ^ hash->v[1] ^ hash->v[2] ^ hash->v[3];
-    for (int i = 0; i < 8; i++)
-      digest.bytes[8 * half + i] = (uint8_t)(word >> (8 * i));
+    for (int i = 0; i < 8; i++) digest.bytes[8 * half + i] = (uint8_t)(word >> (8 * i));
     hash->v[1] ^= 0xdd;
   }
   return digest;
@@ -80,6 +76,5 @@ struct digest hash_end(struct hash *hash) {
 void hash_array(struct hash *hash, const void *items, size_t count, size_t item_size) {
   uint64_t header[2] = {count, item_size};
   hash_bytes(hash, header, sizeof header);
-  if (items && count)
-    hash_bytes(hash, items, count * item_size);
+  if (items && count) hash_bytes(hash, items, count * item_size);
 }

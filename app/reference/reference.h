@@ -1,8 +1,9 @@
 /* reference.h: ray-traced truth, over plain arrays; knows no GL.
  *
- * Visibility is the unblocked fraction of the part of the light above the receiver's geometric horizon: 1 where no part is, behind a
- * rectangular light, and on background. From every surface point rays go to a stratified pattern on the light (sampling.h). The
- * result depends on the inputs alone: not on the number of threads, nor on which of them traced what. */
+ * Visibility is the unblocked fraction of the part of the light above the receiver's geometric horizon: 1 where no
+ * part is, behind a rectangular light, and on background. From every surface point rays go to a stratified pattern on
+ * the light (sampling.h). The result depends on the inputs alone: not on the number of threads, nor on which of them
+ * traced what. */
 #ifndef PENUMBRA_APP_REFERENCE_H
 #define PENUMBRA_APP_REFERENCE_H
 
@@ -26,9 +27,9 @@ struct reference_alpha {
 
 /* Triangles in object space. Those with a coordinate that is not finite, or an index out of range, block nothing. */
 struct reference_mesh {
-  const float *positions; /* 3 a vertex */
+  const float *positions;  /* 3 a vertex */
   const uint32_t *indices; /* 3 a triangle */
-  const float *texcoords; /* 2 a vertex; needed with alpha */
+  const float *texcoords;  /* 2 a vertex; needed with alpha */
   size_t vertex_count, triangle_count;
   const struct reference_alpha *alpha; /* NULL: opaque */
   float cutoff;                        /* alpha below it does not block */
@@ -45,8 +46,8 @@ struct reference_casters {
   int mesh_count, instance_count;
 };
 
-/* u, v, direction: unit, perpendicular, u x v = -direction or direction. Half extents: scene units; sun: tangents, the light
- * being the directions x u + y v - direction with |x| <= half[0], |y| <= half[1]. */
+/* u, v, direction: unit, perpendicular, u x v = -direction or direction. Half extents: scene units; sun: tangents,
+ * the light being the directions x u + y v - direction with |x| <= half[0], |y| <= half[1]. */
 enum reference_shape { REFERENCE_RECTANGLE = 0, REFERENCE_SUN };
 struct reference_light {
   enum reference_shape shape;
@@ -69,8 +70,8 @@ struct reference_points {
 struct reference_options {
   int samples; /* rays a point: a square number 1..REFERENCE_SAMPLES_MAX */
   int threads; /* 0: as many as processors */
-  /* Called on the calling thread about ten times a second, also while the casters are prepared; seconds_left < 0: not known
-   * yet. Returning nonzero stops the work. May be NULL. */
+  /* Called on the calling thread about ten times a second, also while the casters are prepared; seconds_left < 0: not
+   * known yet. Returning nonzero stops the work. May be NULL. */
   int (*progress)(void *user, double fraction, double seconds_left);
   void *user;
 };
@@ -85,7 +86,7 @@ enum reference_status {
   REFERENCE_STOPPED,  /* progress said so; visibility is undefined */
   REFERENCE_ARGUMENT, /* samples, sizes, light or instances make no sense */
   REFERENCE_MEMORY,
-  REFERENCE_DEVICE    /* Embree failed */
+  REFERENCE_DEVICE /* Embree failed */
 };
 
 /* A few words for a status. */

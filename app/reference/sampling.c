@@ -4,7 +4,7 @@
 
 #include "reference/reference.h"
 
-/* ---- integers ------------------------------------------------------------------------------------------------- */
+/* ---- integers ---------------------------------------------------------------------------------------------------- */
 
 static inline uint32_t reverse_bits(uint32_t x) {
   x = (x >> 16) | (x << 16);
@@ -23,8 +23,9 @@ static inline uint32_t mix(uint32_t x) {
   return x ^ (x >> 16);
 }
 
-/* Owen's nested scrambling as a hash (Laine and Karras 2011): each bit is flipped depending on the bits below it, which, the number
- * being bit-reversed, are the more significant ones. Therefore elementary intervals map to elementary intervals. */
+/* Owen's nested scrambling as a hash (Laine and Karras 2011): each bit is flipped depending on the bits below it,
+ * which, the number being bit-reversed, are the more significant ones. Therefore elementary intervals map to
+ * elementary intervals. */
 static inline uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -37,7 +38,7 @@ static inline uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
 /* The top 24 bits, which a float holds exactly, to [-1, 1). */
 static inline float signed_unit(uint32_t bits) { return (float)(int32_t)(bits >> 8) * 0x1p-23f - 1; }
 
-/* ---- the order of points ---------------------------------------------------------------------------------------- */
+/* ---- the order of points ----------------------------------------------------------------------------------------- */
 
 struct ordered {
   uint64_t key;
@@ -51,8 +52,7 @@ static int by_key(const void *a, const void *b) {
 
 static uint64_t spread_bits(uint32_t x) {
   uint64_t result = 0;
-  for (int bit = 0; bit < 32; bit++)
-    result |= (uint64_t)(x >> bit & 1) << (2 * bit);
+  for (int bit = 0; bit < 32; bit++) result |= (uint64_t)(x >> bit & 1) << (2 * bit);
   return result;
 }
 
@@ -60,13 +60,12 @@ static uint64_t spread_bits(uint32_t x) {
 static uint32_t sobol_second(uint32_t i) {
   uint32_t result = 0;
   for (uint32_t v = 1u << 31; i; i >>= 1, v ^= v >> 1)
-    if (i & 1)
-      result ^= v;
+    if (i & 1) result ^= v;
   return result;
 }
 
-/* Sorted along a Morton curve: any 16 points in a row lie in one piece of the light. Scrambling keeps that, since it maps the piece to another
- * one of its size. */
+/* Sorted along a Morton curve: any 16 points in a row lie in one piece of the light. Scrambling keeps that, since it
+ * maps the piece to another one of its size. */
 static void order_net(struct ordered *points, int count) {
   for (int i = 0; i < count; i++) {
     uint32_t x = reverse_bits((uint32_t)i), y = sobol_second((uint32_t)i);
@@ -88,8 +87,7 @@ static void order_grid(struct ordered *points, int side) {
 
 static int square_root(int count) {
   int side = 0;
-  while (side < SAMPLING_SIDE_MAX && side * side < count)
-    side++;
+  while (side < SAMPLING_SIDE_MAX && side * side < count) side++;
   return side;
 }
 
@@ -99,8 +97,7 @@ int reference_samples_valid(int samples) {
 
 int sampling_create(struct sampling *sampling, int count) {
   *sampling = (struct sampling){0};
-  if (!reference_samples_valid(count))
-    return 0;
+  if (!reference_samples_valid(count)) return 0;
   int side = square_root(count), is_net = (count & (count - 1)) == 0;
   struct ordered *points = malloc((size_t)count * sizeof *points);
   sampling->first = malloc((size_t)count * sizeof(uint32_t));
@@ -110,10 +107,8 @@ int sampling_create(struct sampling *sampling, int count) {
     sampling_free(sampling);
     return 0;
   }
-  if (is_net)
-    order_net(points, count);
-  else
-    order_grid(points, side);
+  if (is_net) order_net(points, count);
+  else order_grid(points, side);
   qsort(points, (size_t)count, sizeof *points, by_key);
   for (int i = 0; i < count; i++) {
     sampling->first[i] = points[i].first;
@@ -132,11 +127,10 @@ void sampling_free(struct sampling *sampling) {
   *sampling = (struct sampling){0};
 }
 
-/* ---- one pixel -------------------------------------------------------------------------------------------------- */
+/* ---- one pixel --------------------------------------------------------------------------------------------------- */
 
 static void shuffle(uint16_t *order, int count, uint32_t seed) {
-  for (int i = 0; i < count; i++)
-    order[i] = (uint16_t)i;
+  for (int i = 0; i < count; i++) order[i] = (uint16_t)i;
   for (int i = count - 1; i > 0; i--) {
     seed = mix(seed + 0x9e3779b9u);
     int j = (int)((uint64_t)seed * (uint32_t)(i + 1) >> 32);
@@ -155,21 +149,23 @@ void sampling_begin(const struct sampling *sampling, uint32_t pixel, struct samp
   }
 }
 
-WIDE_VECTORS static void net_packet(const uint32_t *first, const uint32_t *second, const uint32_t seed[2], float *x, float *y) {
-  for (int i = 0; i < SAMPLING_LANES; i++)
-    x[i] = signed_unit(reverse_bits(scramble_reversed(first[i], seed[0])));
-  for (int i = 0; i < SAMPLING_LANES; i++)
-    y[i] = signed_unit(reverse_bits(scramble_reversed(second[i], seed[1])));
+WIDE_VECTORS static void net_packet(const uint32_t *first, const uint32_t *second, const uint32_t seed[2], float *x,
+                                    float *y) {
+  for (int i = 0; i < SAMPLING_LANES; i++) x[i] = signed_unit(reverse_bits(scramble_reversed(first[i], seed[0])));
+  for (int i = 0; i < SAMPLING_LANES; i++) y[i] = signed_unit(reverse_bits(scramble_reversed(second[i], seed[1])));
 }
 
 /* In (0, 1), so far from the ends that rounding cannot carry a point into the next sub-cell. */
 static inline float jitter(uint32_t bits) { return (float)(bits >> 8) * (0x1p-24f * (1 - 0x1p-6f)) + 0x1p-7f; }
 
-/* Kensler 2013: in its cell (column, row) a point takes the sub-column that the row has drawn and the sub-row that the column has. */
-static void grid_point(const struct sampling *sampling, const struct sampling_pixel *state, int index, float *x, float *y) {
+/* Kensler 2013: in its cell (column, row) a point takes the sub-column that the row has drawn and the sub-row that
+ * the column has. */
+static void grid_point(const struct sampling *sampling, const struct sampling_pixel *state, int index, float *x,
+                       float *y) {
   uint32_t column = sampling->first[index], row = sampling->second[index];
   float side = (float)sampling->side;
-  float jitter_x = jitter(mix(state->seed[0] ^ (uint32_t)index)), jitter_y = jitter(mix(state->seed[1] ^ (uint32_t)index));
+  float jitter_x = jitter(mix(state->seed[0] ^ (uint32_t)index)),
+        jitter_y = jitter(mix(state->seed[1] ^ (uint32_t)index));
   *x = 2 * (((float)(column * (uint32_t)sampling->side + state->column[row]) + jitter_x) / (side * side)) - 1;
   *y = 2 * (((float)(row * (uint32_t)sampling->side + state->row[column]) + jitter_y) / (side * side)) - 1;
 }
@@ -185,12 +181,10 @@ int sampling_packet(const struct sampling *sampling, const struct sampling_pixel
   uint32_t points[2][SAMPLING_LANES];
   for (int i = 0; i < SAMPLING_LANES; i++) {
     int index = first + (i < active ? i : active - 1);
-    if (sampling->side)
-      grid_point(sampling, state, index, &x[i], &y[i]);
+    if (sampling->side) grid_point(sampling, state, index, &x[i], &y[i]);
     points[0][i] = sampling->first[index];
     points[1][i] = sampling->second[index];
   }
-  if (!sampling->side)
-    net_packet(points[0], points[1], state->seed, x, y);
+  if (!sampling->side) net_packet(points[0], points[1], state->seed, x, y);
   return active;
 }

@@ -1,11 +1,12 @@
 /* sampling.h: the pattern of points on the light. In each pixel it is
  *
  *     a power of two    an Owen-scrambled (0, m, 2)-net in base 2: every elementary interval holds exactly one point
- *     other squares     correlated multi-jittered samples: one point in each cell of an n x n grid, and in each of N columns and rows
+ *     other squares     correlated multi-jittered samples: one point in each cell of an n x n grid, and in each of
+ *                       N columns and rows
  *
- * so that an edge parallel to the light's is found within 1/N. For a net the star discrepancy is at most (m/3 + 19/9) / N
- * (Dick and Kritzer 2006): 5.44/1024, the error at the corner of a shadow. Points come in packets of 16 that lie close together on the
- * light, because rays that run together are traced several times faster. */
+ * so that an edge parallel to the light's is found within 1/N. For a net the star discrepancy is at most (m/3 + 19/9)
+ * / N (Dick and Kritzer 2006): 5.44/1024, the error at the corner of a shadow. Points come in packets of 16 that lie
+ * close together on the light, because rays that run together are traced several times faster. */
 #ifndef PENUMBRA_APP_SAMPLING_H
 #define PENUMBRA_APP_SAMPLING_H
 
@@ -13,8 +14,10 @@
 
 #define SAMPLING_LANES 16
 
-/* Compiled for several widths of vectors, chosen when the program starts. The bits are the same: no operation is fused or reordered. */
-#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+/* Compiled for several widths of vectors, chosen when the program starts. The bits are the same: no operation is
+ * fused or reordered. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
 #define WIDE_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define WIDE_VECTORS

@@ -1,8 +1,10 @@
+#define _GNU_SOURCE /* sched_getaffinity */
 #include "reference/reference.h"
 
 #include <limits.h>
 #include <math.h>
 #include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,21 +20,24 @@
 
 /* Where a ray starts.
  *
- * A point P that came through a depth buffer lies up to `error` beside its surface, on either side, and Embree evaluates the plane of the
- * triangle that P lies on with rounding of its own. Started at P, half the rays would hit that triangle: acne. So rays start at
+ * A point P that came through a depth buffer lies up to `error` beside its surface, on either side, and Embree
+ * evaluates the plane of the triangle that P lies on with rounding of its own. Started at P, half the rays would hit
+ * that triangle: acne. So rays start at
  *
  *     O = P + n * offset,   offset = error + 16 * 2^-24 * m
  *
- * n being the geometric normal and m the largest magnitude of a coordinate of P or of any caster. The second term: a vertex minus the
- * origin is rounded by at most 2^-24 * 2m in each coordinate, the normal of the triangle follows from three such differences, and
- * within the triangle the plane through them is then off by a small multiple of that; O itself is rounded by 2^-24 * m. 16 covers the sum with
- * room to spare. O is therefore in front of P's own plane, rays go to the part of the light that is in front of it as well
- * (the horizon is taken at O), and neither P's triangle nor one that lies in the same plane can be hit. No second rejection is needed.
+ * n being the geometric normal and m the largest magnitude of a coordinate of P or of any caster. The second term: a
+ * vertex minus the origin is rounded by at most 2^-24 * 2m in each coordinate, the normal of the triangle follows
+ * from three such differences, and within the triangle the plane through them is then off by a small multiple of
+ * that; O itself is rounded by 2^-24 * m. 16 covers the sum with room to spare. O is therefore in front of P's own
+ * plane, rays go to the part of the light that is in front of it as well (the horizon is taken at O), and neither P's
+ * triangle nor one that lies in the same plane can be hit. No second rejection is needed.
  *
- * What it costs: an occluder closer to the surface than the offset is missed. Some 1e-6 of the scene's size: what stands on a
- * surface still shadows it right up to the contact, because the rays cross its side at that height.
+ * What it costs: an occluder closer to the surface than the offset is missed. Some 1e-6 of the scene's size: what
+ * stands on a surface still shadows it right up to the contact, because the rays cross its side at that height.
  *
- * For the same reason rays end at the height `offset` before the light's plane: a ceiling that a light lies in does not block it. */
+ * For the same reason rays end at the height `offset` before the light's plane: a ceiling that a light lies in does
+ * not block it. */
 #define OFFSET_ROUNDING (16 * 0x1p-24f)
 
 #define TILE 8
@@ -61,7 +66,7 @@ static double seconds_now(void) {
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* ---- one point ------------------------------------------------------------------------------------------------- */
+/* ---- one point --------------------------------------------------------------------------------------------------- */
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -74,27 +79,24 @@ struct fan {
 
 static float point_offset(const struct work *work, const float *position, float error) {
   float magnitude = work->magnitude;
-  for (int i = 0; i < 3; i++)
-    magnitude = fmaxf(magnitude, fabsf(position[i]));
+  for (int i = 0; i < 3; i++) magnitude = fmaxf(magnitude, fabsf(position[i]));
   return error + OFFSET_ROUNDING * magnitude;
 }
 
-/* Returns 0 where visibility is 1 without a ray: behind or in the light's plane, or the whole light below the horizon. */
-static int make_fan(const struct reference_light *light, const float *position, const float *normal, float offset, struct fan *fan) {
+/* Returns 0 where visibility is 1 without a ray: behind or in the light's plane, or the whole light below the
+ * horizon. */
+static int make_fan(const struct reference_light *light, const float *position, const float *normal, float offset,
+                    struct fan *fan) {
   double base[3], n[3] = {normal[0], normal[1], normal[2]};
-  for (int i = 0; i < 3; i++)
-    fan->origin[i] = (float)((double)position[i] + n[i] * (double)offset);
+  for (int i = 0; i < 3; i++) fan->origin[i] = (float)((double)position[i] + n[i] * (double)offset);
   fan->reach = INFINITY;
   if (light->shape == REFERENCE_RECTANGLE) {
-    for (int i = 0; i < 3; i++)
-      base[i] = light->center[i] - (double)fan->origin[i];
+    for (int i = 0; i < 3; i++) base[i] = light->center[i] - (double)fan->origin[i];
     double height = -dot(base, light->direction);
-    if (height <= 2 * (double)offset)
-      return 0;
+    if (height <= 2 * (double)offset) return 0;
     fan->reach = (float)(1 - (double)offset / height);
   } else {
-    for (int i = 0; i < 3; i++)
-      base[i] = -light->direction[i];
+    for (int i = 0; i < 3; i++) base[i] = -light->direction[i];
   }
   double half_u = light->half[0], half_v = light->half[1];
   fan->rise = (float)dot(base, n);
@@ -109,7 +111,8 @@ static int make_fan(const struct reference_light *light, const float *position, 
 }
 
 /* Fills the rays of one packet; returns how many of them end above the horizon. */
-WIDE_VECTORS static int aim(const struct fan *fan, const float x[SAMPLING_LANES], const float y[SAMPLING_LANES], int active, struct ray_packet *packet) {
+WIDE_VECTORS static int aim(const struct fan *fan, const float x[SAMPLING_LANES], const float y[SAMPLING_LANES],
+                            int active, struct ray_packet *packet) {
   for (int axis = 0; axis < 3; axis++)
     for (int i = 0; i < SAMPLING_LANES; i++)
       packet->direction[axis][i] = fan->base[axis] + x[i] * fan->axis[0][axis] + y[i] * fan->axis[1][axis];
@@ -126,15 +129,12 @@ static float trace_point(struct work *work, uint32_t index, unsigned long long *
   const struct reference_points *points = work->points;
   const float *position = points->positions + 3 * (size_t)index, *normal = points->normals + 3 * (size_t)index;
   for (int i = 0; i < 3; i++)
-    if (!isfinite(position[i]) || !isfinite(normal[i]))
-      return 1;
-  if (points->receives && !points->receives[index])
-    return 1;
+    if (!isfinite(position[i]) || !isfinite(normal[i])) return 1;
+  if (points->receives && !points->receives[index]) return 1;
   float largest = fmaxf(fabsf(position[0]), fmaxf(fabsf(position[1]), fabsf(position[2])));
   float error = points->errors ? points->errors[index] : largest * REFERENCE_POINT_ERROR;
   struct fan fan;
-  if (!make_fan(work->light, position, normal, point_offset(work, position, error), &fan))
-    return 1;
+  if (!make_fan(work->light, position, normal, point_offset(work, position, error), &fan)) return 1;
   struct sampling_pixel pixel;
   sampling_begin(&work->sampling, index, &pixel);
   struct ray_packet packet;
@@ -146,8 +146,7 @@ static float trace_point(struct work *work, uint32_t index, unsigned long long *
     int active = sampling_packet(&work->sampling, &pixel, i, x, y);
     int traced = aim(&fan, x, y, active, &packet);
     above += traced;
-    if (traced)
-      blocked += occluders_blocked(work->occluders, &packet);
+    if (traced) blocked += occluders_blocked(work->occluders, &packet);
   }
   *rays += (unsigned long long)above;
   return above ? (float)((double)(above - blocked) / (double)above) : 1;
@@ -161,8 +160,7 @@ static void trace_tile(struct work *work, int tile) {
   unsigned long long rays = 0;
   for (int y = y0; y < y0 + TILE && y < points->height; y++)
     for (int x = x0; x < x0 + TILE && x < points->width; x++) {
-      if (atomic_load_explicit(&work->stop, memory_order_relaxed))
-        return;
+      if (atomic_load_explicit(&work->stop, memory_order_relaxed)) return;
       uint32_t index = (uint32_t)y * (uint32_t)points->width + (uint32_t)x;
       work->visibility[index] = trace_point(work, index, &rays);
     }
@@ -229,23 +227,19 @@ static enum reference_status run_workers(struct work *work, const struct referen
   pthread_cond_init(&work->changed, &attributes);
   pthread_condattr_destroy(&attributes);
   work->running = threads;
-  while (started < threads && pthread_create(&ids[started], NULL, worker, work) == 0)
-    started++;
+  while (started < threads && pthread_create(&ids[started], NULL, worker, work) == 0) started++;
   pthread_mutex_lock(&work->lock);
   work->running -= threads - started;
   pthread_mutex_unlock(&work->lock);
-  if (started > 0)
-    watch(work, options);
-  for (int i = 0; i < started; i++)
-    pthread_join(ids[i], NULL);
+  if (started > 0) watch(work, options);
+  for (int i = 0; i < started; i++) pthread_join(ids[i], NULL);
   pthread_cond_destroy(&work->changed);
   pthread_mutex_destroy(&work->lock);
-  if (started == 0)
-    return REFERENCE_MEMORY;
+  if (started == 0) return REFERENCE_MEMORY;
   return atomic_load(&work->stop) ? REFERENCE_STOPPED : REFERENCE_OK;
 }
 
-/* ---- the whole ----------------------------------------------------------------------------------------------------- */
+/* ---- the whole --------------------------------------------------------------------------------------------------- */
 
 const char *reference_status_text(enum reference_status status) {
   static const char *const texts[] = {"done", "stopped", "impossible input", "out of memory", "Embree failed"};
@@ -259,11 +253,9 @@ static int vector_valid(const double v[3]) {
 
 static int light_valid(const struct reference_light *light) {
   for (int i = 0; i < 3; i++)
-    if (light->shape == REFERENCE_RECTANGLE && !isfinite(light->center[i]))
-      return 0;
+    if (light->shape == REFERENCE_RECTANGLE && !isfinite(light->center[i])) return 0;
   for (int i = 0; i < 2; i++)
-    if (!isfinite(light->half[i]) || light->half[i] < 0)
-      return 0;
+    if (!isfinite(light->half[i]) || light->half[i] < 0) return 0;
   return vector_valid(light->direction) && vector_valid(light->u) && vector_valid(light->v);
 }
 
@@ -272,9 +264,18 @@ static int points_valid(const struct reference_points *points) {
          (unsigned long long)points->width * (unsigned long long)points->height <= INT_MAX;
 }
 
+/* Processors that this process may use, which can be fewer than the machine has. */
+static int processor_count(void) {
+#ifdef __linux__
+  cpu_set_t set;
+  if (sched_getaffinity(0, sizeof set, &set) == 0 && CPU_COUNT(&set) > 0) return CPU_COUNT(&set);
+#endif
+  long online = sysconf(_SC_NPROCESSORS_ONLN);
+  return online > 0 && online < INT_MAX ? (int)online : 1;
+}
+
 static int thread_count(int wanted) {
-  long processors = sysconf(_SC_NPROCESSORS_ONLN);
-  int count = wanted > 0 ? wanted : processors > 0 && processors < INT_MAX ? (int)processors : 1;
+  int count = wanted > 0 ? wanted : processor_count();
   return count > REFERENCE_THREADS_MAX ? REFERENCE_THREADS_MAX : count;
 }
 
@@ -287,11 +288,9 @@ struct builder {
 
 static int build_stops(void *user) {
   struct builder *builder = user;
-  if (!builder->options->progress || !pthread_equal(pthread_self(), builder->caller))
-    return 0;
+  if (!builder->options->progress || !pthread_equal(pthread_self(), builder->caller)) return 0;
   double now = seconds_now();
-  if (now - builder->last < STOP_POLL_SECONDS)
-    return 0;
+  if (now - builder->last < STOP_POLL_SECONDS) return 0;
   builder->last = now;
   return builder->options->progress(builder->options->user, 0, -1);
 }
@@ -307,21 +306,20 @@ enum reference_status reference_trace(const struct reference_casters *casters, c
   int threads = thread_count(options->threads);
   enum reference_status status = occluders_create(casters, threads, build_stops, &builder, &occluders);
   if (status == REFERENCE_OK && occluders_empty(occluders)) {
-    for (size_t i = 0; i < (size_t)points->width * (size_t)points->height; i++)
-      visibility[i] = 1;
+    for (size_t i = 0; i < (size_t)points->width * (size_t)points->height; i++) visibility[i] = 1;
   } else if (status == REFERENCE_OK) {
     struct work work = {.light = light, .points = points, .occluders = occluders, .visibility = visibility};
     work.magnitude = occluders_magnitude(occluders);
     work.tile_columns = (points->width + TILE - 1) / TILE;
     work.tile_count = work.tile_columns * ((points->height + TILE - 1) / TILE);
     double start = seconds_now();
-    status = sampling_create(&work.sampling, options->samples) ? run_workers(&work, options, threads) : REFERENCE_MEMORY;
+    status =
+        sampling_create(&work.sampling, options->samples) ? run_workers(&work, options, threads) : REFERENCE_MEMORY;
     sampling_free(&work.sampling);
     done.seconds = seconds_now() - start;
     done.rays = atomic_load(&work.rays);
   }
   occluders_destroy(&occluders);
-  if (result)
-    *result = done;
+  if (result) *result = done;
   return status;
 }

@@ -13,15 +13,14 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-int error_measure(const float *reference, const float *result, const uint8_t *mask, size_t count, struct error_statistics *out) {
+int error_measure(const float *reference, const float *result, const uint8_t *mask, size_t count,
+                  struct error_statistics *out) {
   *out = (struct error_statistics){NAN, NAN, NAN, NAN, NAN, 0, 0};
   double *sizes = malloc((count ? count : 1) * sizeof *sizes);
-  if (!sizes)
-    return 0;
+  if (!sizes) return 0;
   double sum = 0, squares = 0, signed_sum = 0;
   for (size_t i = 0; i < count; i++) {
-    if (!mask[i] || !is_shadow(reference[i], result[i]))
-      continue;
+    if (!mask[i] || !is_shadow(reference[i], result[i])) continue;
     double error = (double)result[i] - (double)reference[i];
     out->not_finite += !isfinite(error);
     sizes[out->pixels++] = fabs(error);

@@ -10,17 +10,18 @@
 
 /* Undefined (NaN), all of them, when there is no shadow pixel, or when one has a result or truth that is not finite. */
 struct error_statistics {
-  double mae;  /* mean |result - reference| */
+  double mae; /* mean |result - reference| */
   double rmse;
-  double p95;  /* the least value that at least 95 % of |result - reference| do not exceed */
-  double max;  /* of |result - reference| */
-  double bias; /* mean of result - reference */
+  double p95;        /* the least value that at least 95 % of |result - reference| do not exceed */
+  double max;        /* of |result - reference| */
+  double bias;       /* mean of result - reference */
   size_t pixels;     /* shadow pixels */
   size_t not_finite; /* of them, those without a number */
 };
 
-/* A shadow pixel: mask nonzero, and reference or result below ERROR_SHADOW_BELOW. Sums are taken in double and in the order of the pixels. Returns 0
- * when memory ran out. */
-int error_measure(const float *reference, const float *result, const uint8_t *mask, size_t count, struct error_statistics *out);
+/* A shadow pixel: mask nonzero, and reference or result below ERROR_SHADOW_BELOW. Sums are taken in double and in the
+ * order of the pixels. Returns 0 when memory ran out. */
+int error_measure(const float *reference, const float *result, const uint8_t *mask, size_t count,
+                  struct error_statistics *out);
 
 #endif

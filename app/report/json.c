@@ -3,10 +3,12 @@
 
 #include "report/report.h"
 
-/* Every function here returns nonzero only when all of it could be added; what was added belongs to the parent in any case. cJSON writes numbers that are not
- * finite as null. */
+/* Every function here returns nonzero only when all of it could be added; what was added belongs to the parent in any
+ * case. cJSON writes numbers that are not finite as null. */
 
-static int add_number(cJSON *object, const char *name, double value) { return cJSON_AddNumberToObject(object, name, value) != NULL; }
+static int add_number(cJSON *object, const char *name, double value) {
+  return cJSON_AddNumberToObject(object, name, value) != NULL;
+}
 
 static int add_text(cJSON *object, const char *name, const char *value) {
   return (value ? cJSON_AddStringToObject(object, name, value) : cJSON_AddNullToObject(object, name)) != NULL;
@@ -14,27 +16,27 @@ static int add_text(cJSON *object, const char *name, const char *value) {
 
 static int add_copy(cJSON *object, const char *name, const cJSON *value) {
   cJSON *copy = value ? cJSON_Duplicate(value, 1) : cJSON_CreateObject();
-  if (copy && cJSON_AddItemToObject(object, name, copy))
-    return 1;
+  if (copy && cJSON_AddItemToObject(object, name, copy)) return 1;
   cJSON_Delete(copy);
   return 0;
 }
 
 static int add_error(cJSON *object, const struct error_statistics *error) {
   cJSON *item = cJSON_AddObjectToObject(object, "error");
-  return item && add_number(item, "mae", error->mae) && add_number(item, "rmse", error->rmse) && add_number(item, "p95", error->p95) &&
-         add_number(item, "max", error->max) && add_number(item, "bias", error->bias) && add_number(item, "pixels", (double)error->pixels);
+  return item && add_number(item, "mae", error->mae) && add_number(item, "rmse", error->rmse) &&
+         add_number(item, "p95", error->p95) && add_number(item, "max", error->max) &&
+         add_number(item, "bias", error->bias) && add_number(item, "pixels", (double)error->pixels);
 }
 
 static int add_times(cJSON *object, const struct report_technique *technique) {
   cJSON *times = cJSON_AddObjectToObject(object, "time_ms");
-  cJSON *total = times ? cJSON_AddObjectToObject(times, "total") : NULL, *stages = times ? cJSON_AddObjectToObject(times, "stages") : NULL;
-  if (!total || !stages || !add_number(total, "median", technique->time_median) || !add_number(total, "min", technique->time_least) ||
-      !add_number(total, "max", technique->time_most))
+  cJSON *total = times ? cJSON_AddObjectToObject(times, "total") : NULL,
+        *stages = times ? cJSON_AddObjectToObject(times, "stages") : NULL;
+  if (!total || !stages || !add_number(total, "median", technique->time_median) ||
+      !add_number(total, "min", technique->time_least) || !add_number(total, "max", technique->time_most))
     return 0;
   for (int i = 0; i < technique->stage_count; i++)
-    if (!add_number(stages, technique->stages[i].name, technique->stages[i].milliseconds))
-      return 0;
+    if (!add_number(stages, technique->stages[i].name, technique->stages[i].milliseconds)) return 0;
   return 1;
 }
 
@@ -44,13 +46,13 @@ static int add_result(cJSON *results, const struct report_technique *technique) 
     cJSON_Delete(item);
     return 0;
   }
-  return add_text(item, "technique", technique->name) && add_text(item, "label", technique->label) && add_text(item, "file", technique->file) &&
-         add_copy(item, "parameters", technique->parameters) && add_error(item, &technique->error) && add_times(item, technique);
+  return add_text(item, "technique", technique->name) && add_text(item, "label", technique->label) &&
+         add_text(item, "file", technique->file) && add_copy(item, "parameters", technique->parameters) &&
+         add_error(item, &technique->error) && add_times(item, technique);
 }
 
 static int fill(cJSON *json, const struct report *report) {
-  if (!add_text(json, "penumbra", report->version) || !add_number(json, "schema", 1))
-    return 0;
+  if (!add_text(json, "penumbra", report->version) || !add_number(json, "schema", 1)) return 0;
   cJSON *device = cJSON_AddObjectToObject(json, "device");
   if (!device || !add_text(device, "renderer", report->renderer) || !add_text(device, "version", report->gl_version) ||
       !add_copy(json, "scene", report->scene))
@@ -61,15 +63,13 @@ static int fill(cJSON *json, const struct report *report) {
     return 0;
   cJSON *results = cJSON_AddArrayToObject(json, "results");
   for (int i = 0; results && i < report->technique_count; i++)
-    if (!add_result(results, &report->techniques[i]))
-      return 0;
+    if (!add_result(results, &report->techniques[i])) return 0;
   return results != NULL;
 }
 
 cJSON *report_json(const struct report *report) {
   cJSON *json = cJSON_CreateObject();
-  if (json && fill(json, report))
-    return json;
+  if (json && fill(json, report)) return json;
   cJSON_Delete(json);
   return NULL;
 }

@@ -8,13 +8,14 @@
 const uint8_t picture_background[3] = {58, 62, 68};
 const uint8_t picture_uncounted[3] = {176, 178, 180};
 
-/* ---- errors as colours -------------------------------------------------------------------------------------------- */
+/* ---- errors as colours ------------------------------------------------------------------------------------------- */
 
-/* From white outwards, in equal steps of |error|: lightness falls evenly on both arms, and blue against red is told apart by (almost) everyone. */
+/* From white outwards, in equal steps of |error|: lightness falls evenly on both arms, and blue against red is told
+ * apart by (almost) everyone. */
 #define ARM 5
 static const uint8_t arms[2][ARM][3] = {
-  {{255, 255, 255}, {170, 207, 229}, {90, 160, 205}, {38, 106, 173}, {5, 48, 97}},
-  {{255, 255, 255}, {249, 190, 160}, {226, 120, 92}, {186, 40, 50}, {103, 0, 31}},
+    {{255, 255, 255}, {170, 207, 229}, {90, 160, 205}, {38, 106, 173}, {5, 48, 97}},
+    {{255, 255, 255}, {249, 190, 160}, {226, 120, 92}, {186, 40, 50}, {103, 0, 31}},
 };
 
 void picture_error_colour(double error, uint8_t rgb[3]) {
@@ -26,24 +27,20 @@ void picture_error_colour(double error, uint8_t rgb[3]) {
   double at = fmin(fabs(error) / PICTURE_ERROR_FULL, 1) * (ARM - 1);
   int step = at >= ARM - 1 ? ARM - 2 : (int)at;
   const uint8_t(*arm)[3] = arms[error > 0];
-  for (int i = 0; i < 3; i++)
-    rgb[i] = (uint8_t)lround(arm[step][i] + (at - step) * (arm[step + 1][i] - arm[step][i]));
+  for (int i = 0; i < 3; i++) rgb[i] = (uint8_t)lround(arm[step][i] + (at - step) * (arm[step + 1][i] - arm[step][i]));
 }
 
 uint8_t *picture_error_map(const struct report *report, const float *result) {
   size_t count = (size_t)report->width * (size_t)report->height;
   uint8_t *rgb = malloc(3 * count);
   for (size_t i = 0; rgb && i < count; i++)
-    if (report->background[i])
-      memcpy(rgb + 3 * i, picture_background, 3);
-    else if (!report->mask[i])
-      memcpy(rgb + 3 * i, picture_uncounted, 3);
-    else
-      picture_error_colour((double)result[i] - (double)report->reference[i], rgb + 3 * i);
+    if (report->background[i]) memcpy(rgb + 3 * i, picture_background, 3);
+    else if (!report->mask[i]) memcpy(rgb + 3 * i, picture_uncounted, 3);
+    else picture_error_colour((double)result[i] - (double)report->reference[i], rgb + 3 * i);
   return rgb;
 }
 
-/* ---- shrinking ------------------------------------------------------------------------------------------------------ */
+/* ---- shrinking --------------------------------------------------------------------------------------------------- */
 
 static double to_linear(int code) {
   double c = code / 255.0;
@@ -64,17 +61,14 @@ static void shrink_line(const uint8_t *line, int width, int to_width, const doub
   for (int x = 0; x < to_width; x++) {
     double lo = x * ratio, hi = fmin((x + 1) * ratio, width), sum[3] = {0, 0, 0};
     for (int i = (int)lo; i < width && i < hi; i++)
-      for (int c = 0; c < 3; c++)
-        sum[c] += overlap(i, lo, hi) * linear[line[3 * i + c]];
-    for (int c = 0; c < 3; c++)
-      out[3 * x + c] = (float)(sum[c] / (hi - lo));
+      for (int c = 0; c < 3; c++) sum[c] += overlap(i, lo, hi) * linear[line[3 * i + c]];
+    for (int c = 0; c < 3; c++) out[3 * x + c] = (float)(sum[c] / (hi - lo));
   }
 }
 
 uint8_t *picture_shrink(const uint8_t *rgb, int width, int height, int to_width, int to_height) {
   double linear[256], ratio = (double)height / to_height;
-  for (int i = 0; i < 256; i++)
-    linear[i] = to_linear(i);
+  for (int i = 0; i < 256; i++) linear[i] = to_linear(i);
   size_t line = 3 * (size_t)to_width;
   float *lines = malloc((size_t)height * line * sizeof *lines);
   uint8_t *out = malloc((size_t)to_height * line);
@@ -89,8 +83,7 @@ uint8_t *picture_shrink(const uint8_t *rgb, int width, int height, int to_width,
     double lo = y * ratio, hi = fmin((y + 1) * ratio, height);
     for (size_t x = 0; x < line; x++) {
       double sum = 0;
-      for (int i = (int)lo; i < height && i < hi; i++)
-        sum += overlap(i, lo, hi) * (double)lines[(size_t)i * line + x];
+      for (int i = (int)lo; i < height && i < hi; i++) sum += overlap(i, lo, hi) * (double)lines[(size_t)i * line + x];
       out[(size_t)y * line + x] = to_code(sum / (hi - lo));
     }
   }
@@ -98,7 +91,7 @@ uint8_t *picture_shrink(const uint8_t *rgb, int width, int height, int to_width,
   return out;
 }
 
-/* ---- PNG ------------------------------------------------------------------------------------------------------------- */
+/* ---- PNG --------------------------------------------------------------------------------------------------------- */
 
 struct buffer {
   uint8_t *bytes;
@@ -110,8 +103,7 @@ static cairo_status_t append(void *user, const unsigned char *bytes, unsigned co
   if (buffer->size + count > buffer->room) {
     size_t room = 2 * buffer->room + count + 4096;
     uint8_t *larger = realloc(buffer->bytes, room);
-    if (!larger)
-      return CAIRO_STATUS_NO_MEMORY;
+    if (!larger) return CAIRO_STATUS_NO_MEMORY;
     buffer->bytes = larger;
     buffer->room = room;
   }

@@ -7,7 +7,8 @@
 
 #include "report/report.h"
 
-/* Errors are shown from -PICTURE_ERROR_FULL (too dark, blue) over 0 (white) to +PICTURE_ERROR_FULL (too light, red), always. */
+/* Errors are shown from -PICTURE_ERROR_FULL (too dark, blue) over 0 (white) to +PICTURE_ERROR_FULL (too light, red),
+ * always. */
 #define PICTURE_ERROR_FULL 0.25
 
 /* The colour of one error; beyond the scale: its end. NaN: magenta. */

@@ -63,7 +63,8 @@ enum report_status report_sheet(const struct report *report, uint8_t **png, size
 /* Writes the page; the caller looks at ferror. */
 enum report_status report_html(const struct report *report, FILE *file);
 
-/* The permutation that sorts the techniques by mean error, undefined ones last, equal ones in their order. order holds technique_count. */
+/* The permutation that sorts the techniques by mean error, undefined ones last, equal ones in their order. order
+ * holds technique_count. */
 void report_order(const struct report *report, int *order);
 
 #endif

@@ -16,22 +16,22 @@
  *     +---------+ +---------+
  */
 enum {
-  MARGIN = 24,       /* around the sheet */
-  GAP = 24,          /* between cells */
-  HEAD = 64,         /* the sheet's title */
-  CELL_HEAD = 74,    /* label and numbers */
-  BETWEEN = 8,       /* picture and error map */
-  TILE_MAX = 640,    /* pictures wider or taller than this are shrunk */
+  MARGIN = 24,    /* around the sheet */
+  GAP = 24,       /* between cells */
+  HEAD = 64,      /* the sheet's title */
+  CELL_HEAD = 74, /* label and numbers */
+  BETWEEN = 8,    /* picture and error map */
+  TILE_MAX = 640, /* pictures wider or taller than this are shrunk */
   TILE_MIN = 160,
-  CELL_LEAST = 440,  /* what the text needs */
-  LEGEND = 300,      /* what the legend needs */
-  SIDE_MAX = 30000   /* of the sheet; cairo's own limit is 32767 */
+  CELL_LEAST = 540, /* what the text needs */
+  LEGEND = 300,     /* what the legend needs */
+  SIDE_MAX = 30000  /* of the sheet; cairo's own limit is 32767 */
 };
 #define PIXELS_MAX 100e6
 #define ASPECT 1.4 /* width to height that the grid aims at */
 
 struct layout {
-  int tile[2];  /* picture */
+  int tile[2]; /* picture */
   int cell[2];
   int columns, rows;
   int size[2];
@@ -41,8 +41,7 @@ struct layout {
 
 static void lay_out(struct layout *layout, const int picture[2], int tile_max, int columns, int cells) {
   double shrink = fmax(1, fmax((double)picture[0] / tile_max, (double)picture[1] / tile_max));
-  for (int i = 0; i < 2; i++)
-    layout->tile[i] = (int)fmax(1, floor(picture[i] / shrink + 0.5));
+  for (int i = 0; i < 2; i++) layout->tile[i] = (int)fmax(1, floor(picture[i] / shrink + 0.5));
   layout->cell[0] = layout->tile[0] > CELL_LEAST ? layout->tile[0] : CELL_LEAST;
   layout->cell[1] = CELL_HEAD + layout->tile[1] + BETWEEN + (layout->tile[1] > LEGEND ? layout->tile[1] : LEGEND);
   layout->columns = columns;
@@ -52,10 +51,12 @@ static void lay_out(struct layout *layout, const int picture[2], int tile_max, i
 }
 
 static int fits(const struct layout *layout) {
-  return layout->size[0] <= SIDE_MAX && layout->size[1] <= SIDE_MAX && (double)layout->size[0] * layout->size[1] <= PIXELS_MAX;
+  return layout->size[0] <= SIDE_MAX && layout->size[1] <= SIDE_MAX &&
+         (double)layout->size[0] * layout->size[1] <= PIXELS_MAX;
 }
 
-/* The number of columns nearest to ASPECT with few empty cells; tiles shrink when even that is too large. Returns 0 when nothing fits. */
+/* The number of columns nearest to ASPECT with few empty cells; tiles shrink when even that is too large. Returns 0
+ * when nothing fits. */
 static int choose_layout(struct layout *best, const struct report *report) {
   int picture[2] = {report->width, report->height}, cells = report->technique_count + 1;
   for (int tile_max = TILE_MAX; tile_max >= TILE_MIN; tile_max /= 2) {
@@ -70,20 +71,21 @@ static int choose_layout(struct layout *best, const struct report *report) {
         *best = layout;
       }
     }
-    if (isfinite(distance))
-      return 1;
+    if (isfinite(distance)) return 1;
   }
   return 0;
 }
 
-/* ---- text ---------------------------------------------------------------------------------------------------------- */
+/* ---- text -------------------------------------------------------------------------------------------------------- */
 
 struct pen {
   cairo_t *cairo;
   cairo_surface_t *surface;
 };
 
-static void colour(struct pen *pen, const uint8_t rgb[3]) { cairo_set_source_rgb(pen->cairo, rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0); }
+static void colour(struct pen *pen, const uint8_t rgb[3]) {
+  cairo_set_source_rgb(pen->cairo, rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0);
+}
 
 static double text_width(struct pen *pen, const char *text) {
   cairo_text_extents_t extents;
@@ -95,8 +97,7 @@ static double text_width(struct pen *pen, const char *text) {
 static void shorten(struct pen *pen, char *text, double width) {
   size_t length = strlen(text);
   while (length > 0 && text_width(pen, text) > width) {
-    do
-      length--;
+    do length--;
     while (length > 0 && ((unsigned char)text[length] & 0xc0) == 0x80);
     strcpy(text + length, "\xe2\x80\xa6");
   }
@@ -105,27 +106,32 @@ static void shorten(struct pen *pen, char *text, double width) {
 /* Text comes from file names too: what is no UTF-8 or no character would put cairo into an error state. */
 static void make_printable(char *text) {
   for (unsigned char *c = (unsigned char *)text; *c;) {
-    int more = *c < 0x80 ? 0 : *c >= 0xc2 && *c < 0xe0 ? 1 : *c >= 0xe0 && *c < 0xf0 ? 2 : *c >= 0xf0 && *c < 0xf5 ? 3 : -1, good = more >= 0 && *c >= 0x20 && *c != 0x7f;
-    for (int i = 1; good && i <= more; i++)
-      good = (c[i] & 0xc0) == 0x80;
-    if (good && ((*c == 0xe0 && c[1] < 0xa0) || (*c == 0xed && c[1] > 0x9f) || (*c == 0xf0 && c[1] < 0x90) || (*c == 0xf4 && c[1] > 0x8f)))
+    int more = *c < 0x80                 ? 0
+               : *c >= 0xc2 && *c < 0xe0 ? 1
+               : *c >= 0xe0 && *c < 0xf0 ? 2
+               : *c >= 0xf0 && *c < 0xf5 ? 3
+                                         : -1,
+        good = more >= 0 && *c >= 0x20 && *c != 0x7f;
+    for (int i = 1; good && i <= more; i++) good = (c[i] & 0xc0) == 0x80;
+    if (good && ((*c == 0xe0 && c[1] < 0xa0) || (*c == 0xed && c[1] > 0x9f) || (*c == 0xf0 && c[1] < 0x90) ||
+                 (*c == 0xf4 && c[1] > 0x8f)))
       good = 0; /* overlong, surrogate, beyond Unicode */
-    if (good)
-      c += more + 1;
-    else
-      *c++ = '?';
+    if (good) c += more + 1;
+    else *c++ = '?';
   }
 }
 
 /* One line with its baseline at y, at most width wide: a little smaller if need be, then cut. */
-static void write_line(struct pen *pen, double x, double y, double width, double size, int bold, const char *format, ...) {
+static void write_line(struct pen *pen, double x, double y, double width, double size, int bold, const char *format,
+                       ...) {
   char text[512];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(text, sizeof text - 4, format, arguments);
   va_end(arguments);
   make_printable(text);
-  cairo_select_font_face(pen->cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL, bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_select_font_face(pen->cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(pen->cairo, size);
   double actual = text_width(pen, text);
   if (actual > width) {
@@ -136,7 +142,8 @@ static void write_line(struct pen *pen, double x, double y, double width, double
   cairo_show_text(pen->cairo, text);
 }
 
-static const uint8_t ink[3] = {28, 30, 33}, faint[3] = {92, 96, 102}, page[3] = {246, 246, 244}, line_colour[3] = {200, 202, 204};
+static const uint8_t ink[3] = {28, 30, 33}, faint[3] = {92, 96, 102}, page[3] = {246, 246, 244},
+                     line_colour[3] = {200, 202, 204};
 
 /* "0.0123", or "-" for what is undefined. */
 struct number_text {
@@ -144,19 +151,19 @@ struct number_text {
 };
 static struct number_text number(const char *format, double value) {
   struct number_text out = {"\xe2\x80\x93"};
-  if (isfinite(value))
-    snprintf(out.text, sizeof out.text, format, value);
+  if (isfinite(value)) snprintf(out.text, sizeof out.text, format, value);
   return out;
 }
 
-/* ---- a cell -------------------------------------------------------------------------------------------------------- */
+/* ---- a cell ------------------------------------------------------------------------------------------------------ */
 
 /* Draws the picture at its place in the cell, shrunk to the tile, with a thin frame. Returns 0 when memory ran out. */
-static int draw_tile(struct pen *pen, const struct layout *layout, const struct report *report, int x, int y, const uint8_t *rgb) {
+static int draw_tile(struct pen *pen, const struct layout *layout, const struct report *report, int x, int y,
+                     const uint8_t *rgb) {
   int shrinks = layout->tile[0] != report->width || layout->tile[1] != report->height;
-  uint8_t *small = shrinks ? picture_shrink(rgb, report->width, report->height, layout->tile[0], layout->tile[1]) : NULL;
-  if (shrinks && !small)
-    return 0;
+  uint8_t *small =
+      shrinks ? picture_shrink(rgb, report->width, report->height, layout->tile[0], layout->tile[1]) : NULL;
+  if (shrinks && !small) return 0;
   picture_copy(pen->surface, x, y, small ? small : rgb, layout->tile[0], layout->tile[1]);
   free(small);
   colour(pen, line_colour);
@@ -166,20 +173,23 @@ static int draw_tile(struct pen *pen, const struct layout *layout, const struct 
   return 1;
 }
 
-static int draw_technique(struct pen *pen, const struct layout *layout, const struct report *report, int index, int x, int y) {
+static int draw_technique(struct pen *pen, const struct layout *layout, const struct report *report, int index, int x,
+                          int y) {
   const struct report_technique *technique = &report->techniques[index];
   const struct error_statistics *error = &technique->error;
   double first = report->techniques[0].error.mae, width = layout->cell[0];
   colour(pen, ink);
   write_line(pen, x, y + 19, width, 19, 1, "%s", technique->label);
-  write_line(pen, x, y + 42, width, 14.5, 0, "mean %s   rms %s   95 %% %s   max %s   bias %s", number("%.4f", error->mae).text,
-             number("%.4f", error->rmse).text, number("%.3f", error->p95).text, number("%.3f", error->max).text, number("%+.4f", error->bias).text);
+  write_line(pen, x, y + 42, width, 14.5, 0, "mean %s   rms %s   95 %% %s   max %s   bias %s",
+             number("%.4f", error->mae).text, number("%.4f", error->rmse).text, number("%.3f", error->p95).text,
+             number("%.3f", error->max).text, number("%+.4f", error->bias).text);
   char ratio[160] = "";
   if (index > 0 && first > 0 && isfinite(error->mae))
-    snprintf(ratio, sizeof ratio, "   %.3f \xc3\x97 the error of %.80s", error->mae / first, report->techniques[0].name);
+    snprintf(ratio, sizeof ratio, "   %.3f \xc3\x97 the error of %.80s", error->mae / first,
+             report->techniques[0].name);
   colour(pen, faint);
-  write_line(pen, x, y + 63, width, 14.5, 0, "%s ms a frame   %zu shadow pixels%s", number("%.2f", technique->time_median).text, error->pixels,
-             ratio);
+  write_line(pen, x, y + 63, width, 14.5, 0, "%s ms a frame   %zu shadow pixels%s",
+             number("%.2f", technique->time_median).text, error->pixels, ratio);
   uint8_t *map = picture_error_map(report, technique->visibility);
   int top = y + CELL_HEAD;
   int drawn = map && draw_tile(pen, layout, report, x, top, technique->picture) &&
@@ -234,28 +244,31 @@ static void draw_legend(struct pen *pen, int x, int y, int width) {
   write_line(pen, x + width - 62, y + 46, 70, 14.5, 0, "too light");
   draw_scale(pen, x, y + 54, width);
   draw_swatch(pen, x, y + 122, width, white, "no error");
-  draw_swatch(pen, x, y + 150, width, picture_uncounted, "not counted: does not receive, or does not face the whole light");
+  draw_swatch(pen, x, y + 150, width, picture_uncounted,
+              "not counted: does not receive, or does not face the whole light");
   draw_swatch(pen, x, y + 178, width, picture_background, "background");
   colour(pen, faint);
-  write_line(pen, x, y + 226, width, 14, 0, "Beyond the scale's ends the colour stays. Numbers are taken over shadow pixels:");
-  write_line(pen, x, y + 246, width, 14, 0, "where the reference or the technique sees less than 1 - 1/2048 of the light.");
+  write_line(pen, x, y + 226, width, 14, 0,
+             "Beyond the scale's ends the colour stays. Numbers are taken over shadow pixels:");
+  write_line(pen, x, y + 246, width, 14, 0,
+             "where the reference or the technique sees less than 1 - 1/2048 of the light.");
   write_line(pen, x, y + 266, width, 14, 0, "mean, rms, 95 %% and max are of |error|; bias is the mean error.");
 }
 
 static int draw_truth(struct pen *pen, const struct layout *layout, const struct report *report, int x, int y) {
   colour(pen, ink);
   write_line(pen, x, y + 19, layout->cell[0], 19, 1, "reference");
-  write_line(pen, x, y + 42, layout->cell[0], 14.5, 0, "ray-traced, %d ray%s a pixel", report->samples, report->samples == 1 ? "" : "s");
+  write_line(pen, x, y + 42, layout->cell[0], 14.5, 0, "ray-traced, %d ray%s a pixel", report->samples,
+             report->samples == 1 ? "" : "s");
   colour(pen, faint);
   write_line(pen, x, y + 63, layout->cell[0], 14.5, 0, "%s s", number("%.1f", report->reference_ms / 1000).text);
   int top = y + CELL_HEAD;
-  if (!draw_tile(pen, layout, report, x, top, report->reference_picture))
-    return 0;
+  if (!draw_tile(pen, layout, report, x, top, report->reference_picture)) return 0;
   draw_legend(pen, x, top + layout->tile[1] + BETWEEN, layout->cell[0]);
   return 1;
 }
 
-/* ---- the sheet ------------------------------------------------------------------------------------------------------- */
+/* ---- the sheet --------------------------------------------------------------------------------------------------- */
 
 static int draw(struct pen *pen, const struct layout *layout, const struct report *report) {
   colour(pen, page);
@@ -275,7 +288,8 @@ static int draw(struct pen *pen, const struct layout *layout, const struct repor
              report->facts ? "   " : "", report->renderer ? report->renderer : "", report->version);
   int drawn = 1;
   for (int i = 0; drawn && i <= report->technique_count; i++) {
-    int x = MARGIN + i % layout->columns * (layout->cell[0] + GAP), y = MARGIN + HEAD + i / layout->columns * (layout->cell[1] + GAP);
+    int x = MARGIN + i % layout->columns * (layout->cell[0] + GAP),
+        y = MARGIN + HEAD + i / layout->columns * (layout->cell[1] + GAP);
     drawn = i == 0 ? draw_truth(pen, layout, report, x, y) : draw_technique(pen, layout, report, i - 1, x, y);
   }
   return drawn && cairo_status(pen->cairo) == CAIRO_STATUS_SUCCESS;
@@ -283,8 +297,7 @@ static int draw(struct pen *pen, const struct layout *layout, const struct repor
 
 enum report_status report_sheet(const struct report *report, uint8_t **png, size_t *size) {
   struct layout layout;
-  if (!choose_layout(&layout, report))
-    return REPORT_TOO_MANY;
+  if (!choose_layout(&layout, report)) return REPORT_TOO_MANY;
   struct pen pen = {.surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, layout.size[0], layout.size[1])};
   pen.cairo = cairo_create(pen.surface);
   int done = cairo_status(pen.cairo) == CAIRO_STATUS_SUCCESS && draw(&pen, &layout, report);

@@ -20,8 +20,7 @@ void report_order(const struct report *report, int *order) {
 
 static void print_number(FILE *file, int width, const char *format, double value) {
   char text[32] = "-";
-  if (isfinite(value))
-    snprintf(text, sizeof text, format, value);
+  if (isfinite(value)) snprintf(text, sizeof text, format, value);
   fprintf(file, "  %*s", width, text);
 }
 
@@ -43,8 +42,8 @@ void report_table(const struct report *report, FILE *file) {
   char ratio[80];
   snprintf(ratio, sizeof ratio, "to %s", first->name);
   int ratio_width = column_width(ratio, 8);
-  fprintf(file, "%-*s  %7s  %*s  %7s  %7s  %7s  %8s  %10s\n", label_width, "technique", "mean", ratio_width, ratio, "rms", "95 %", "max", "bias",
-          "ms a frame");
+  fprintf(file, "%-*s  %7s  %*s  %7s  %7s  %7s  %8s  %10s\n", label_width, "technique", "mean", ratio_width, ratio,
+          "rms", "95 %", "max", "bias", "ms a frame");
   for (int i = 0; i < report->technique_count; i++) {
     const struct report_technique *technique = &report->techniques[order[i]];
     fprintf(file, "%-*s", label_width, technique->label);

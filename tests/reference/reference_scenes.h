@@ -7,11 +7,17 @@
 
 #include "reference/reference.h"
 
-#define IDENTITY {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}
+#define IDENTITY \
+  { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 }
 
 /* Shines straight down, u along x, v along -z. */
-static inline struct reference_light light_down(enum reference_shape shape, double height, double half_u, double half_v) {
-  struct reference_light light = {.shape = shape, .center = {0, height, 0}, .direction = {0, -1, 0}, .u = {1, 0, 0}, .v = {0, 0, -1},
+static inline struct reference_light light_down(enum reference_shape shape, double height, double half_u,
+                                                double half_v) {
+  struct reference_light light = {.shape = shape,
+                                  .center = {0, height, 0},
+                                  .direction = {0, -1, 0},
+                                  .u = {1, 0, 0},
+                                  .v = {0, 0, -1},
                                   .half = {half_u, half_v}};
   return light;
 }
@@ -28,12 +34,14 @@ static inline struct plane_points plane_points(int width, int height, float x0, 
   plane.positions = malloc(3 * count * sizeof(float));
   plane.normals = malloc(3 * count * sizeof(float));
   for (size_t i = 0; i < count; i++) {
-    float fx = ((float)(i % (size_t)width) + 0.5f) / (float)width, fz = ((float)(i / (size_t)width) + 0.5f) / (float)height;
+    float fx = ((float)(i % (size_t)width) + 0.5f) / (float)width,
+          fz = ((float)(i / (size_t)width) + 0.5f) / (float)height;
     float position[3] = {x0 + (x1 - x0) * fx, 0, z0 + (z1 - z0) * fz}, normal[3] = {0, 1, 0};
     memcpy(plane.positions + 3 * i, position, sizeof position);
     memcpy(plane.normals + 3 * i, normal, sizeof normal);
   }
-  plane.points = (struct reference_points){.width = width, .height = height, .positions = plane.positions, .normals = plane.normals};
+  plane.points = (struct reference_points){
+      .width = width, .height = height, .positions = plane.positions, .normals = plane.normals};
   return plane;
 }
 
@@ -54,8 +62,11 @@ static inline struct quad horizontal_quad(float y, float x0, float x1, float z0,
 }
 
 static inline struct reference_mesh quad_mesh(const struct quad *quad) {
-  struct reference_mesh mesh = {.positions = quad->positions, .indices = quad->indices, .texcoords = quad->texcoords,
-                                .vertex_count = 4, .triangle_count = 2};
+  struct reference_mesh mesh = {.positions = quad->positions,
+                                .indices = quad->indices,
+                                .texcoords = quad->texcoords,
+                                .vertex_count = 4,
+                                .triangle_count = 2};
   return mesh;
 }
 

@@ -20,8 +20,7 @@ static char base[512], directory[1024];
 static int set_up(void **state) {
   (void)state;
   snprintf(base, sizeof base, "%s/penumbra-cache-XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
-  if (!mkdtemp(base))
-    return -1;
+  if (!mkdtemp(base)) return -1;
   setenv("XDG_CACHE_HOME", base, 1);
   return !cache_directory(directory, sizeof directory);
 }
@@ -40,10 +39,10 @@ static void hash_is_siphash(void **state) {
     const char *text;
     uint8_t digest[16];
   } vectors[] = {
-    {"", {0xa3, 0x81, 0x7f, 0x04, 0xba, 0x25, 0xa8, 0xe6, 0x6d, 0xf6, 0x72, 0x14, 0xc7, 0x55, 0x02, 0x93}},
-    {"a", {0x0e, 0xa4, 0xf2, 0xfb, 0x02, 0xad, 0x21, 0xd9, 0x2d, 0x5f, 0xc9, 0x16, 0x84, 0xf2, 0x64, 0x26}},
-    {"The quick brown fox jumps over the lazy dog",
-     {0x76, 0x28, 0xc9, 0x30, 0x1a, 0xa4, 0x41, 0x25, 0x55, 0xe6, 0x52, 0x27, 0xcd, 0x31, 0x96, 0x4e}},
+      {"", {0xa3, 0x81, 0x7f, 0x04, 0xba, 0x25, 0xa8, 0xe6, 0x6d, 0xf6, 0x72, 0x14, 0xc7, 0x55, 0x02, 0x93}},
+      {"a", {0x0e, 0xa4, 0xf2, 0xfb, 0x02, 0xad, 0x21, 0xd9, 0x2d, 0x5f, 0xc9, 0x16, 0x84, 0xf2, 0x64, 0x26}},
+      {"The quick brown fox jumps over the lazy dog",
+       {0x76, 0x28, 0xc9, 0x30, 0x1a, 0xa4, 0x41, 0x25, 0x55, 0xe6, 0x52, 0x27, 0xcd, 0x31, 0x96, 0x4e}},
   };
   for (size_t i = 0; i < 3; i++)
     for (size_t step = 1; step <= 17; step += 4) { /* however it is cut */
@@ -115,8 +114,7 @@ static void everything_is_in_the_key(void **state) {
     case 17: samples = 25; break;
     }
     struct digest key = cache_key(&in.casters, &in.light, &in.plane.points, samples);
-    for (int i = 0; i < count; i++)
-      assert_memory_not_equal(keys[i].bytes, key.bytes, 16);
+    for (int i = 0; i < count; i++) assert_memory_not_equal(keys[i].bytes, key.bytes, 16);
     keys[count++] = key;
     plane_points_free(&in.plane);
   }
@@ -127,7 +125,7 @@ static void everything_is_in_the_key(void **state) {
   plane_points_free(&again.plane);
 }
 
-/* ---- files --------------------------------------------------------------------------------------------------------- */
+/* ---- files ------------------------------------------------------------------------------------------------------- */
 
 #define COUNT 100
 static char why[2048];
@@ -141,8 +139,7 @@ static struct digest numbered_key(int number) {
 
 static void path_of(const struct digest *key, char *path, size_t size) {
   int length = snprintf(path, size, "%s/", directory);
-  for (int i = 0; i < 16; i++)
-    length += snprintf(path + length, size - (size_t)length, "%02x", key->bytes[i]);
+  for (int i = 0; i < 16; i++) length += snprintf(path + length, size - (size_t)length, "%02x", key->bytes[i]);
   snprintf(path + length, size - (size_t)length, ".visibility");
 }
 
@@ -296,10 +293,8 @@ static void longest_unused_goes_first(void **state) {
   (void)state;
   cache_trim(directory, 0);
   float first;
-  for (int i = 10; i < 15; i++)
-    assert_true(store(i, 0.5f));
-  for (int i = 10; i < 15; i++)
-    set_age(i, 10000 * (20 - i));
+  for (int i = 10; i < 15; i++) assert_true(store(i, 0.5f));
+  for (int i = 10; i < 15; i++) set_age(i, 10000 * (20 - i));
   char foreign[2048];
   snprintf(foreign, sizeof foreign, "%s/notes.txt", directory);
   rewrite(foreign, (const uint8_t *)"mine", 4);
@@ -330,15 +325,15 @@ static void nothing_temporary_stays(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(hash_is_siphash),
-    cmocka_unit_test(everything_is_in_the_key),
-    cmocka_unit_test(what_is_stored_is_found),
-    cmocka_unit_test(damage_is_seen),
-    cmocka_unit_test(impossible_values_are_seen),
-    cmocka_unit_test(odd_files_are_passed_by),
-    cmocka_unit_test(directories_that_cannot_be),
-    cmocka_unit_test(longest_unused_goes_first),
-    cmocka_unit_test(nothing_temporary_stays),
+      cmocka_unit_test(hash_is_siphash),
+      cmocka_unit_test(everything_is_in_the_key),
+      cmocka_unit_test(what_is_stored_is_found),
+      cmocka_unit_test(damage_is_seen),
+      cmocka_unit_test(impossible_values_are_seen),
+      cmocka_unit_test(odd_files_are_passed_by),
+      cmocka_unit_test(directories_that_cannot_be),
+      cmocka_unit_test(longest_unused_goes_first),
+      cmocka_unit_test(nothing_temporary_stays),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

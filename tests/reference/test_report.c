@@ -67,7 +67,8 @@ static void undefined_is_nan(void **state) {
   const uint8_t mask[] = {1, 1}, nothing[] = {0, 0};
   struct error_statistics error;
   assert_true(error_measure(lit, lit, mask, 2, &error));
-  assert_true(error.pixels == 0 && isnan(error.mae) && isnan(error.rmse) && isnan(error.p95) && isnan(error.max) && isnan(error.bias));
+  assert_true(error.pixels == 0 && isnan(error.mae) && isnan(error.rmse) && isnan(error.p95) && isnan(error.max) &&
+              isnan(error.bias));
   assert_true(error_measure(broken, lit, nothing, 2, &error));
   assert_true(error.pixels == 0 && isnan(error.mae));
   assert_true(error_measure(lit, lit, mask, 0, &error));
@@ -76,7 +77,7 @@ static void undefined_is_nan(void **state) {
   assert_true(error.pixels == 2 && error.not_finite == 1 && isnan(error.mae) && isnan(error.max));
 }
 
-/* ---- a made-up comparison ------------------------------------------------------------------------------------------ */
+/* ---- a made-up comparison ---------------------------------------------------------------------------------------- */
 
 enum { WIDTH = 90, HEIGHT = 60, COUNT = WIDTH * HEIGHT };
 
@@ -110,18 +111,38 @@ static void make(struct made *made) {
   made->stages[0] = (struct report_stage){"depth_map", 1.5};
   made->stages[1] = (struct report_stage){"gather", 2.25};
   static const char *const names[] = {"hard", "pcss", "bitmask"};
-  static const char *const labels[] = {"hard", "pcss:samples=8", "bitmask:samples=16j,primitive=quad-exact,maps=two-sided,hierarchy=hybrid,filter=2"};
+  static const char *const labels[] = {
+      "hard", "pcss:samples=8", "bitmask:samples=16j,primitive=quad-exact,maps=two-sided,hierarchy=hybrid,filter=2"};
   for (int t = 0; t < 3; t++) {
-    made->techniques[t] = (struct report_technique){.name = names[t], .label = labels[t], .parameters = t ? made->parameters : NULL,
-                                                    .file = t == 1 ? "02-pcss-samples=8.exr" : NULL, .time_median = t == 2 ? NAN : 3.75 + t,
-                                                    .time_least = t == 2 ? NAN : 3.5, .time_most = t == 2 ? NAN : 8, .stages = made->stages,
-                                                    .stage_count = t == 2 ? 0 : 2, .visibility = made->visibility[t], .picture = made->pictures[t + 1]};
+    made->techniques[t] = (struct report_technique){.name = names[t],
+                                                    .label = labels[t],
+                                                    .parameters = t ? made->parameters : NULL,
+                                                    .file = t == 1 ? "02-pcss-samples=8.exr" : NULL,
+                                                    .time_median = t == 2 ? NAN : 3.75 + t,
+                                                    .time_least = t == 2 ? NAN : 3.5,
+                                                    .time_most = t == 2 ? NAN : 8,
+                                                    .stages = made->stages,
+                                                    .stage_count = t == 2 ? 0 : 2,
+                                                    .visibility = made->visibility[t],
+                                                    .picture = made->pictures[t + 1]};
     assert_true(error_measure(made->reference, made->visibility[t], made->mask, COUNT, &made->techniques[t].error));
   }
-  made->report = (struct report){.version = "0.1.0", .renderer = "a renderer", .gl_version = "3.3", .title = "made", .facts = "light 1 x 1",
-                                 .scene = made->scene, .samples = 1024, .reference_ms = 1234.5, .width = WIDTH, .height = HEIGHT,
-                                 .reference = made->reference, .reference_picture = made->pictures[0], .mask = made->mask,
-                                 .background = made->background, .techniques = made->techniques, .technique_count = 3};
+  made->report = (struct report){.version = "0.1.0",
+                                 .renderer = "a renderer",
+                                 .gl_version = "3.3",
+                                 .title = "made",
+                                 .facts = "light 1 x 1",
+                                 .scene = made->scene,
+                                 .samples = 1024,
+                                 .reference_ms = 1234.5,
+                                 .width = WIDTH,
+                                 .height = HEIGHT,
+                                 .reference = made->reference,
+                                 .reference_picture = made->pictures[0],
+                                 .mask = made->mask,
+                                 .background = made->background,
+                                 .techniques = made->techniques,
+                                 .technique_count = 3};
 }
 
 static void unmake(struct made *made) {
@@ -135,10 +156,8 @@ static char *printed(const struct report *report, int html) {
   static size_t size;
   FILE *file = open_memstream(&text, &size);
   assert_non_null(file);
-  if (html)
-    assert_int_equal(report_html(report, file), REPORT_OK);
-  else
-    report_table(report, file);
+  if (html) assert_int_equal(report_html(report, file), REPORT_OK);
+  else report_table(report, file);
   fclose(file);
   return text;
 }
@@ -209,14 +228,15 @@ static void json_has_the_contracts_members(void **state) {
   assert_true(number_at(pcss, "time_ms.total.median") == 4.75 && number_at(pcss, "time_ms.stages.gather") == 2.25);
   assert_true(cJSON_IsNull(cJSON_GetObjectItem(cJSON_GetObjectItem(bitmask, "error"), "mae")));
   assert_true(cJSON_IsNull(cJSON_GetObjectItem(bitmask, "file")));
-  assert_true(cJSON_IsNull(cJSON_GetObjectItem(cJSON_GetObjectItem(cJSON_GetObjectItem(bitmask, "time_ms"), "total"), "median")));
+  assert_true(cJSON_IsNull(
+      cJSON_GetObjectItem(cJSON_GetObjectItem(cJSON_GetObjectItem(bitmask, "time_ms"), "total"), "median")));
   cJSON_Delete(json);
   cJSON_Delete(built);
   cJSON_free(text);
   unmake(&made);
 }
 
-/* ---- pictures ---------------------------------------------------------------------------------------------------------- */
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
 static int is_colour(const uint8_t *a, int r, int g, int b) { return a[0] == r && a[1] == g && a[2] == b; }
 
@@ -260,17 +280,14 @@ static void error_map_tells_four_things_apart(void **state) {
 static void shrinking_averages_light(void **state) {
   (void)state;
   uint8_t stripes[4 * 8 * 3];
-  for (int i = 0; i < 32; i++)
-    memset(stripes + 3 * i, i % 2 ? 255 : 0, 3);
+  for (int i = 0; i < 32; i++) memset(stripes + 3 * i, i % 2 ? 255 : 0, 3);
   uint8_t *half = picture_shrink(stripes, 8, 4, 4, 2);
-  for (int i = 0; i < 4 * 2 * 3; i++)
-    assert_int_equal(half[i], 188);
+  for (int i = 0; i < 4 * 2 * 3; i++) assert_int_equal(half[i], 188);
   free(half);
   uint8_t flat[5 * 7 * 3];
   memset(flat, 100, sizeof flat);
   uint8_t *third = picture_shrink(flat, 7, 5, 3, 2);
-  for (int i = 0; i < 3 * 2 * 3; i++)
-    assert_int_equal(third[i], 100);
+  for (int i = 0; i < 3 * 2 * 3; i++) assert_int_equal(third[i], 100);
   free(third);
 }
 
@@ -280,8 +297,7 @@ struct reader {
 };
 static cairo_status_t read_png(void *user, unsigned char *out, unsigned count) {
   struct reader *reader = user;
-  if (count > reader->left)
-    return CAIRO_STATUS_READ_ERROR;
+  if (count > reader->left) return CAIRO_STATUS_READ_ERROR;
   memcpy(out, reader->bytes, count);
   reader->bytes += count;
   reader->left -= count;
@@ -300,8 +316,7 @@ static int contains(cairo_surface_t *surface, const uint8_t *rgb, int width, int
         memcpy(&pixel, data + (size_t)(y0 + i / width) * (size_t)stride + 4 * (size_t)(x0 + i % width), 4);
         same = (pixel & 0xffffff) == ((uint32_t)rgb[3 * i] << 16 | (uint32_t)rgb[3 * i + 1] << 8 | rgb[3 * i + 2]);
       }
-      if (same)
-        return 1;
+      if (same) return 1;
     }
   return 0;
 }
@@ -316,8 +331,7 @@ static void sheet_holds_every_picture(void **state) {
   struct reader reader = {png, size};
   cairo_surface_t *surface = cairo_image_surface_create_from_png_stream(read_png, &reader);
   assert_int_equal(cairo_surface_status(surface), CAIRO_STATUS_SUCCESS);
-  for (int i = 0; i < 4; i++)
-    assert_true(contains(surface, made.pictures[i], WIDTH, HEIGHT));
+  for (int i = 0; i < 4; i++) assert_true(contains(surface, made.pictures[i], WIDTH, HEIGHT));
   for (int i = 0; i < 3; i++) {
     uint8_t *map = picture_error_map(&made.report, made.visibility[i]);
     assert_true(contains(surface, map, WIDTH, HEIGHT));
@@ -367,7 +381,7 @@ static void sheet_takes_anything(void **state) {
   unmake(&made);
 }
 
-/* ---- the page ------------------------------------------------------------------------------------------------------------- */
+/* ---- the page ---------------------------------------------------------------------------------------------------- */
 
 static void page_is_self_contained(void **state) {
   (void)state;
@@ -394,18 +408,18 @@ static void page_is_self_contained(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(errors_by_hand),
-    cmocka_unit_test(shadow_begins_at_its_threshold),
-    cmocka_unit_test(percentile_is_the_nearest_rank),
-    cmocka_unit_test(undefined_is_nan),
-    cmocka_unit_test(table_is_sorted),
-    cmocka_unit_test(json_has_the_contracts_members),
-    cmocka_unit_test(error_colours_diverge),
-    cmocka_unit_test(error_map_tells_four_things_apart),
-    cmocka_unit_test(shrinking_averages_light),
-    cmocka_unit_test(sheet_holds_every_picture),
-    cmocka_unit_test(sheet_takes_anything),
-    cmocka_unit_test(page_is_self_contained),
+      cmocka_unit_test(errors_by_hand),
+      cmocka_unit_test(shadow_begins_at_its_threshold),
+      cmocka_unit_test(percentile_is_the_nearest_rank),
+      cmocka_unit_test(undefined_is_nan),
+      cmocka_unit_test(table_is_sorted),
+      cmocka_unit_test(json_has_the_contracts_members),
+      cmocka_unit_test(error_colours_diverge),
+      cmocka_unit_test(error_map_tells_four_things_apart),
+      cmocka_unit_test(shrinking_averages_light),
+      cmocka_unit_test(sheet_holds_every_picture),
+      cmocka_unit_test(sheet_takes_anything),
+      cmocka_unit_test(page_is_self_contained),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -48,8 +48,7 @@ static void powers_of_two_are_nets(void **state) {
   for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
     for (uint32_t pixel = 0; pixel < (counts[c] > 4096 ? 2u : 40u); pixel++) {
       pixel_points(counts[c], pixel * 7919, x, y);
-      for (int columns = 1; columns <= counts[c]; columns *= 2)
-        assert_one_in_each(x, y, columns, counts[c] / columns);
+      for (int columns = 1; columns <= counts[c]; columns *= 2) assert_one_in_each(x, y, columns, counts[c] / columns);
     }
   free(x);
   free(y);
@@ -112,17 +111,16 @@ static void only_squares_are_taken(void **state) {
     assert_false(sampling_create(&sampling, bad[i]));
     assert_null(sampling.first);
   }
-  for (int side = 1; side <= 256; side++)
-    assert_true(reference_samples_valid(side * side));
+  for (int side = 1; side <= 256; side++) assert_true(reference_samples_valid(side * side));
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(powers_of_two_are_nets),
-    cmocka_unit_test(other_squares_are_multi_jittered),
-    cmocka_unit_test(discrepancy_is_within_six_of_1024),
-    cmocka_unit_test(pixels_differ_and_repeat),
-    cmocka_unit_test(only_squares_are_taken),
+      cmocka_unit_test(powers_of_two_are_nets),
+      cmocka_unit_test(other_squares_are_multi_jittered),
+      cmocka_unit_test(discrepancy_is_within_six_of_1024),
+      cmocka_unit_test(pixels_differ_and_repeat),
+      cmocka_unit_test(only_squares_are_taken),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
