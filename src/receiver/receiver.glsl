@@ -39,6 +39,15 @@ bool pn_blocks(pn_Receiver r, vec3 q) {
   return d.z > r.epsilon_w && pn_plane_front(r.n, r.k, q, r.m) > r.epsilon_plane + r.sigma * lever;
 }
 
+// The same for a sample that stands for a whole texel, as in a hard shadow's comparison: it was taken up to a texel aside of the line it is asked
+// about, and a surface that bends towards the light (a crease, a facetted mesh) rises by up to that much in front of the tangent plane on the
+// way. What is lower than that the map cannot tell from the surface itself.
+bool pn_blocks_apart(int light, pn_Receiver r, vec3 q) {
+  vec2 aside = abs(q.xy - r.m.xy), texel = 1.0 / pn_lights[light].map_bounds[0].zw;
+  float rise = min(max(aside.x, aside.y), max(texel.x, texel.y));
+  return pn_blocks(r, q) && pn_plane_front(r.n, r.k, q, r.m) > rise;
+}
+
 // Receivers that no part of the light shines on: facing away, or behind a rectangle.
 bool pn_unlit(int light, pn_Receiver r) {
   return (!pn_is_sun(light) && r.p.z <= 0.0) || dot(abs(r.n.xy), pn_extent(light)) - r.k <= 0.0;

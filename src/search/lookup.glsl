@@ -8,7 +8,7 @@ vec3 pn_texel_point(int light, highp sampler2DArray maps, int map, ivec2 texel) 
 
 // 1 where the texel hides light from the receiver.
 float pn_texel_blocks(int light, highp sampler2DArray maps, int map, pn_Receiver r, ivec2 texel) {
-  return pn_blocks(r, pn_texel_point(light, maps, map, texel)) ? 1.0 : 0.0;
+  return pn_blocks_apart(light, r, pn_texel_point(light, maps, map, texel)) ? 1.0 : 0.0;
 }
 
 // The same, weighted bilinearly over the four texels around a position: comparisons are filtered, never depths.

@@ -14,7 +14,7 @@ bool pn_sees(pn_Receiver r, int map) {
   ivec2 texel = ivec2(floor(pn_map_texel(0, map, pn_map_shear(0, map, r.m).xy)));
   vec3 q = pn_texel_point(0, pn_maps, map, texel);
   q.xy += light_point * q.z; // back from the sheared map
-  return !pn_blocks(r, q);
+  return !pn_blocks_apart(0, r, q);
 }
 
 void main() {

@@ -6,19 +6,42 @@
 // Sample i of n x n on [-1, 1]^2, at the middle of its cell.
 vec2 pn_cell(int i, int n) { return (2.0 * vec2(i % n, i / n) + 1.0) / float(n) - 1.0; }
 
-// Average w of the blockers in the search window; PN_NOTHING without any.
-float pn_blockers(int light, highp sampler2DArray maps, pn_Receiver r, int n, float w_max) {
-  vec2 window = pn_search_window(pn_extent(light), w_max, r.m.z);
-  float sum = 0.0, count = 0.0;
+// Blockers among n x n samples of the window that belongs to casters at w: adds their w, and their weights. What a sample hides of the light
+// is its share of the map over (w - w_R)^2; that is its weight. inner: the middle quarter is left to a finer step.
+vec2 pn_search_step(int light, highp sampler2DArray maps, pn_Receiver r, int n, float w, bool inner) {
+  vec2 window = pn_search_window(pn_extent(light), w, r.m.z);
+  float cell = window.x * window.y;
+  vec2 sum = vec2(0.0);
   for (int i = 0; i < n * n; i++) {
-    vec2 st = r.m.xy + pn_cell(i, n) * window;
+    vec2 at = pn_cell(i, n);
+    if (inner && all(lessThan(abs(at), vec2(0.25)))) continue;
+    vec2 st = r.m.xy + at * window;
     int map = pn_map_at(light, st);
     vec3 q = pn_texel_point(light, maps, map, ivec2(floor(pn_map_texel(light, map, st))));
-    if (!pn_blocks(r, q)) continue;
-    sum += q.z;
-    count += 1.0;
+    // What does not project onto the light itself blocks nothing, though it lies in the window of a nearer one.
+    vec2 reach = pn_search_window(pn_extent(light), q.z, r.m.z);
+    if (!pn_blocks_apart(light, r, q) || any(greaterThan(abs(q.xy - r.m.xy), reach))) continue;
+    float weight = cell / ((q.z - r.m.z) * (q.z - r.m.z));
+    sum += weight * vec2(q.z, 1.0);
   }
-  return count > 0.0 ? sum / count : PN_NOTHING;
+  return sum;
+}
+
+// Average w of the blockers; PN_NOTHING without any. Casters far from the light lie in a small part of the window only, which n x n samples may miss:
+// the middle is searched again, four times finer, until samples lie a texel apart.
+float pn_blockers(int light, highp sampler2DArray maps, pn_Receiver r, int n, float w_max) {
+  vec2 texels = 2.0 * pn_search_window(pn_extent(light), w_max, r.m.z) * pn_lights[light].map_bounds[0].zw / float(n);
+  float spacing = max(texels.x, texels.y);
+  float reach = w_max - r.m.z;
+  vec2 sum = vec2(0.0);
+  for (int step = 0; step < 8; step++) {
+    bool inner = spacing > 1.0 && n > 1;
+    sum += pn_search_step(light, maps, r, n, r.m.z + reach, inner);
+    if (!inner) break;
+    spacing *= 0.25;
+    reach *= 0.25;
+  }
+  return sum.y > 0.0 ? sum.x / sum.y : PN_NOTHING;
 }
 
 float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r) {
