@@ -148,9 +148,14 @@ static int same_face(const surfaces *seen, int a, int b) {
   return p[3] == q[3] && dot(n, m) > 0.999 && fabs(dot(n, sub(v3_of(p), v3_of(q)))) < 1e-3;
 }
 
+/* The pixel and the next two that way. */
+static int run_of_three(const surfaces *seen, int i, int step) {
+  return same_face(seen, i, i + step) && same_face(seen, i, i + 2 * step);
+}
+
 int truth_plane_known(const surfaces *seen, int x, int y) {
-  int i = y * seen->width + x;
-  if (x < 1 || y < 1 || x >= seen->width - 1 || y >= seen->height - 1) return 0;
-  return (same_face(seen, i, i - 1) || same_face(seen, i, i + 1)) &&
-         (same_face(seen, i, i - seen->width) || same_face(seen, i, i + seen->width));
+  int i = y * seen->width + x, row = seen->width;
+  if (x < 2 || y < 2 || x >= seen->width - 2 || y >= seen->height - 2) return 0;
+  return (run_of_three(seen, i, -1) || run_of_three(seen, i, 1)) &&
+         (run_of_three(seen, i, -row) || run_of_three(seen, i, row));
 }

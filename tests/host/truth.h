@@ -33,7 +33,8 @@ int truth_hard(const truth_light *light, const scene *world, vec3 p, vec3 n, dou
  * shadow within two texels. */
 int truth_sees_all(const truth_light *light, const scene *world, vec3 p, vec3 n);
 
-/* 1 when the pixel's plane can be told from its neighbours: to the left or right, and above or below, lies the same flat face. */
+/* 1 when the pixel's plane can be told from its neighbours: two pixels to the left or right, and two above or below, show the same
+ * flat face. One would not do: that two surfaces meet shows only where a slope changes. */
 int truth_plane_known(const surfaces *seen, int x, int y);
 
 /* 1 when the segment from a to b meets a caster strictly between the fractions 0 and most. */
