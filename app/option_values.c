@@ -20,7 +20,10 @@ int read_numbers(const char *name, const char *text, int count, const char *shap
   const char *at = text;
   for (int i = 0; i < count; i++) {
     at = read_number(at, &out[i]);
-    if (!at || *at != (i + 1 < count ? ',' : 0)) return input_error("%s: '%s' is not %s in finite numbers", name, text, shape);
+    if (!at || *at != (i + 1 < count ? ',' : 0)) {
+      if (count == 1) return input_error("%s: '%s' is not a finite number", name, text);
+      return input_error("%s: '%s' is not %s in finite numbers", name, text, shape);
+    }
     if (fabs(out[i]) > COORDINATE_MAX) return input_error("%s: '%s' is beyond %g", name, text, COORDINATE_MAX);
     at++;
   }

@@ -27,10 +27,35 @@ struct option_row {
   const char *help;
 };
 
+/* The nearest technique, or the nearest parameter of a technique, to what a spec names wrongly; "" where nothing is near. */
+static void suggest(const char *spec, char *hint, size_t hint_size) {
+  enum { NAMES_MAX = 128 };
+  const char *names[NAMES_MAX], *at = spec + strcspn(spec, ":");
+  char typed[64];
+  int count = 0;
+  snprintf(typed, sizeof typed, "%.*s", (int)(at - spec), spec);
+  const pn_technique *technique = pn_technique_find(typed);
+  if (!technique) {
+    for (int i = 0; i < pn_technique_count() && i < NAMES_MAX; i++) names[count++] = pn_technique_at(i)->name;
+    if (nearest_name(typed, names, count, hint, hint_size)) return;
+  }
+  for (int i = 0; technique && i < technique->parameter_count && i < NAMES_MAX; i++) names[count++] = technique->parameters[i].name;
+  for (const char *key = at; technique && *key; key += strcspn(key, ",")) {
+    key++;
+    snprintf(typed, sizeof typed, "%.*s", (int)strcspn(key, "=,"), key);
+    int known = 0;
+    for (int i = 0; i < count; i++) known |= strcmp(typed, names[i]) == 0;
+    if (!known && nearest_name(typed, names, count, hint, hint_size)) return;
+  }
+  *hint = 0;
+}
+
 static int read_technique(struct options *o, const char *name, const char *value) {
-  char why[400] = "";
-  if (pn_technique_parse(value, NULL, NULL, why, sizeof why) != PN_OK)
-    return input_error("%s %s: %s", name, value, *why ? why : "not a technique; penumbra list techniques names them");
+  char why[400] = "", hint[100];
+  if (pn_technique_parse(value, NULL, NULL, why, sizeof why) != PN_OK) {
+    suggest(value, hint, sizeof hint);
+    return input_error("%s %s: %s%s%s", name, value, *why ? why : "not a technique", *hint ? "; " : "", hint);
+  }
   o->techniques[o->technique_count++] = value;
   return STATUS_OK;
 }

@@ -37,9 +37,9 @@ enum { TOPIC_COUNT = sizeof topics / sizeof *topics };
 static int unknown_topic(const char *typed) {
   const char *names[TOPIC_COUNT];
   for (int i = 0; i < TOPIC_COUNT; i++) names[i] = topics[i].name;
-  char hint[80] = "";
-  return input_error("list: '%s' is not techniques, scenes or studies%s%s", typed,
-                     nearest_name(typed, names, TOPIC_COUNT, hint, sizeof hint) ? "; " : "", *hint ? hint : "");
+  char hint[80];
+  if (nearest_name(typed, names, TOPIC_COUNT, hint, sizeof hint)) return input_error("list: unknown '%s'; %s", typed, hint);
+  return input_error("list: '%s' is not techniques, scenes or studies", typed);
 }
 
 int command_list(const struct options *o) {

@@ -103,23 +103,22 @@ static void send_node(struct importer *importer, const struct aiNode *node, stru
     if (node->mChildren[i]) send_node(importer, node->mChildren[i], transform, up_is_z, depth + 1);
 }
 
-/* One warning for everything that was left out. */
-static void send_counts(const struct importer *importer) {
-  char text[300] = "";
+/* "dropped 3 triangles without area, ...": everything that was left out, or "". */
+static void describe_dropped(const struct importer *importer, char *text, size_t size) {
   const struct {
     uint64_t count;
-    const char *what;
-  } rows[] = {{importer->dropped_nan, "with coordinates that are not finite"},
-              {importer->dropped_area, "without area"},
-              {importer->dropped_index, "with corners that do not exist"}};
-  for (int i = 0; i < 3; i++)
-    if (rows[i].count)
-      snprintf(text + strlen(text), sizeof text - strlen(text), "%s%llu %s %s", *text ? ", " : "dropped ",
-               (unsigned long long)rows[i].count, rows[i].count == 1 ? "triangle" : "triangles", rows[i].what);
-  if (importer->dropped_instances)
-    snprintf(text + strlen(text), sizeof text - strlen(text), "%s%llu placed with unusable transforms", *text ? ", " : "dropped meshes: ",
-             (unsigned long long)importer->dropped_instances);
-  if (*text) send_text(importer->fd, RECORD_WARNING, "%s", text);
+    const char *one, *many;
+  } rows[] = {{importer->dropped_nan, "triangle with a coordinate that is not finite", "triangles with coordinates that are not finite"},
+              {importer->dropped_area, "triangle without area", "triangles without area"},
+              {importer->dropped_index, "triangle with a corner that does not exist", "triangles with corners that do not exist"},
+              {importer->dropped_instances, "mesh placed with an unusable transform", "meshes placed with unusable transforms"}};
+  *text = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    if (!rows[i].count) continue;
+    size_t length = strlen(text);
+    snprintf(text + length, size - length, "%s%llu %s", length ? ", " : "dropped ", (unsigned long long)rows[i].count,
+             rows[i].count == 1 ? rows[i].one : rows[i].many);
+  }
 }
 
 /* The importer's own words, without line ends. */
@@ -132,6 +131,10 @@ static void send_import_error(int fd) {
     if (!(*text == '\n' || *text == '\r') || (length && line[length - 1] != ' ')) line[length++] = *text == '\n' || *text == '\r' ? ' ' : *text;
   while (length && line[length - 1] == ' ') length--;
   line[length] = 0;
+  if (strstr(line, "No meshes remaining")) {
+    send_text(fd, RECORD_ERROR, "holds no triangles, only points or lines; a model needs triangles or polygons");
+    return;
+  }
   if (strstr(line, "bad_alloc") || strstr(line, "bad_array_new_length")) {
     send_text(fd, RECORD_ERROR, "importing it takes more memory than a file of its size should need; it is probably damaged");
     return;
@@ -154,11 +157,13 @@ void import_child(const char *path, int up_is_z, int fd) {
   struct aiMatrix4x4 identity;
   aiIdentityMatrix4(&identity);
   send_node(&importer, importer.model->mRootNode, identity, up_is_z, 0);
-  send_counts(&importer);
+  char dropped[300];
+  describe_dropped(&importer, dropped, sizeof dropped);
   if (importer.instance_count == 0) {
-    send_text(fd, RECORD_ERROR, "holds no usable triangles; a model needs triangles or polygons");
+    send_text(fd, RECORD_ERROR, "holds no usable triangles%s%s", *dropped ? ": " : "; a model needs triangles or polygons", dropped);
     return;
   }
+  if (*dropped) send_text(fd, RECORD_WARNING, "%s", dropped);
   struct record end = {.tag = RECORD_END};
   send_bytes(fd, &end, sizeof end);
 }
