@@ -24,6 +24,10 @@ if(PENUMBRA_SANITIZE)
   # For the whole tree, since a sanitizer's runtime must be in every executable.
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
+  target_sources(penumbra_settings INTERFACE
+    "$<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${PROJECT_SOURCE_DIR}/cmake/sanitizers.c>")
+  target_link_options(penumbra_settings INTERFACE
+    "$<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:LINKER:--export-dynamic-symbol=dlclose>")
   set(PENUMBRA_LINK_OPTIONS "")
 else()
   # A symbol that nothing defines is found here, not by the first program that loads the library.
