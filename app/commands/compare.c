@@ -111,7 +111,7 @@ static int make_entries(struct comparison *c) {
 
 /* ---- the work ---------------------------------------------------------------------------------------------------- */
 
-/* Times first: all techniques in turn, then one frame each whose visibility is kept. */
+/* All techniques in turn; each one's visibility is that of its last frame. */
 static int draw_techniques(struct comparison *c) {
   const struct setup *setup = &c->scene->setup;
   struct client *client = c->host.client;
@@ -124,8 +124,7 @@ static int draw_techniques(struct comparison *c) {
   for (int i = 0; i < c->count && !status; i++) {
     struct entry *e = &c->entries[i];
     e->visibility = malloc(pixel_count(c) * sizeof *e->visibility);
-    status = e->visibility ? client_frame(client, e->light) : memory_error();
-    if (!status) status = client_visibility(client, e->light, e->visibility);
+    status = e->visibility ? client_visibility(client, e->light, e->visibility) : memory_error();
   }
   return status;
 }
@@ -308,7 +307,8 @@ static int write_outputs(struct comparison *c) {
   fprintf(file, "reference: %d ray%s a pixel, %.1f s", o->reference_samples, o->reference_samples == 1 ? "" : "s",
           truth->seconds);
   if (truth->from_cache) fputs(", from the cache", file);
-  else if (truth->seconds > 0) fprintf(file, ", %.1f million rays a second", truth->rays / truth->seconds / 1e6);
+  else if (truth->rays > 0 && truth->seconds > 0)
+    fprintf(file, ", %.1f million rays a second", truth->rays / truth->seconds / 1e6);
   fputs("\n\n", file);
   report_table(&c->report, file);
   fputc('\n', file);

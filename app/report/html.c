@@ -25,7 +25,8 @@ static const char style_text[] =
     "font-variant-numeric: tabular-nums }\n"
     "td:first-child, th:first-child { text-align: left } thead th { border-bottom: 1px solid #c8cacc; font-weight: "
     "normal; color: #5c6066 }\n"
-    "#stage { position: relative; display: inline-block; max-width: 100%; line-height: 0; cursor: ew-resize; "
+    ".frame { display: inline-block; max-width: 100% } .facts { white-space: pre-wrap }\n"
+    "#stage { position: relative; line-height: 0; cursor: ew-resize; "
     "touch-action: none }\n"
     "#stage img { max-width: 100%; height: auto; user-select: none } #stage #left { position: absolute; left: 0; top: "
     "0 }\n"
@@ -160,11 +161,11 @@ static void write_stage(FILE *file, const struct report *report, const int *orde
   write_choices(file, report, "right", report->technique_count ? order[0] + 1 : 0);
   fputs("<span><label><input type=\"radio\" name=\"view\" value=\"picture\" checked> pictures</label>\n"
         "<label><input type=\"radio\" name=\"view\" value=\"error\"> error maps</label></span>\n</div>\n"
-        "<div id=\"stage\"><img id=\"right\" alt=\"right\" draggable=\"false\"><img id=\"left\" alt=\"left\" "
+        "<div class=\"frame\"><div id=\"stage\"><img id=\"right\" alt=\"right\" draggable=\"false\"><img id=\"left\" alt=\"left\" "
         "draggable=\"false\">"
         "<div id=\"bar\"></div></div>\n"
         "<input id=\"split\" type=\"range\" min=\"0\" max=\"100\" step=\"0.1\" value=\"50\" aria-label=\"border "
-        "between left and right\">\n</div>\n",
+        "between left and right\">\n</div></div>\n",
         file);
 }
 
@@ -225,7 +226,7 @@ enum report_status report_html(const struct report *report, FILE *file) {
   write_escaped(file, report->title);
   fprintf(file, "</title>\n%s</head>\n<body>\n<h1>", style_text);
   write_escaped(file, report->title);
-  fputs("</h1>\n<p class=\"faint\">", file);
+  fputs("</h1>\n<p class=\"faint facts\">", file);
   write_escaped(file, report->facts ? report->facts : "");
   fputs("<br>", file);
   write_escaped(file, report->renderer ? report->renderer : "");
