@@ -222,7 +222,7 @@ void odd_set_viewports(void) {
     gl.ViewportIndexedf(i, (GLfloat)i, 2, 3, 4);
     gl.ScissorIndexed(i, (GLint)i, 2, 3, 4);
     gl.DepthRangeIndexed(i, 0.25, 0.5);
-    gl.Enablei(GL_SCISSOR_TEST, i);
+    (i == 2 ? gl.Disablei : gl.Enablei)(GL_SCISSOR_TEST, i);
   }
 }
 

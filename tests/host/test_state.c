@@ -97,9 +97,29 @@ static pn_result see(int i) {
   return pn_visibility(lights[i % LIGHTS], receivers[i / LIGHTS]);
 }
 
+/* The host has the results bound when their receiver gets another size, and while lights and receivers are destroyed. */
+static pn_result resize(int i) {
+  pn_receiver_desc desc = host_receiver_desc(&views[0], &targets[0]);
+  pn_image image;
+  pn_result result = pn_result_image(lights[i], receivers[0], &image);
+  gl.ActiveTexture(GL_TEXTURE0 + (GLenum)i);
+  gl.BindTexture(image.target, image.texture);
+  desc.width = WIDTH / 2;
+  if (result == PN_OK) result = pn_receiver_set(receivers[0], &desc);
+  return result == PN_OK ? pn_visibility(lights[i], receivers[0]) : result;
+}
+
 static pn_result see_into(int i) {
   (void)i;
   return pn_visibility_into(lights[0], receivers[0], into, 1);
+}
+
+/* A light whose casters are all left out: results are filled without a map. */
+static pn_result see_nothing(int i) {
+  pn_result result = pn_maps_update(lights[i], h.casters, 0, NULL, 0);
+  if (result == PN_OK) result = pn_visibility(lights[i], receivers[0]);
+  if (result == PN_OK) result = pn_visibility_into(lights[i], receivers[0], into, 0);
+  return result;
 }
 
 static pn_result look(int i) {
@@ -150,7 +170,7 @@ static const step creation[] = {{"pn_context_create", make_context, 1}, {"pn_sta
 static const step frame[] = {
     {"pn_prepare", prepare, LIGHTS}, {"pn_casters_create", make_casters, 1}, {"pn_mesh_add", add_mesh, SCENE_MESHES},
     {"pn_mesh_moved", move_mesh, 1}, {"pn_receiver_set", make_receiver, VIEWS}, {"pn_light_set", make_light, LIGHTS},
-    {"pn_maps_update", update, LIGHTS}, {"pn_visibility", see, IMAGES}, {"pn_visibility_into", see_into, 1},
+    {"nothing casts", see_nothing, 1}, {"pn_maps_update", update, LIGHTS}, {"pn_visibility", see, IMAGES}, {"pn_visibility_into", see_into, 1},
     {"pn_debug_image", look, LIGHTS}, {"pn_times", times, LIGHTS}, {"pn_glsl", text, 1},
 };
 static const step closing[] = {{"pn_state_end", end, 1}};
@@ -162,7 +182,7 @@ static state_list before, after, defaults;
 /* Runs the steps; with look_after each one is held against the state before. */
 static void run(const step *steps, int count, int look_after, const state_list *allowed, const char *const *except) {
   int changed = 0;
-  for (int k = 0; k < count; k++) {
+  for (int k = 0; k < count && changed == 0; k++) {
     for (int i = 0; i < steps[k].count; i++) {
       pn_result result = steps[k].call(i);
       if (result != PN_OK) fail_msg("%s (%d): %s: %s", steps[k].name, i, pn_result_name(result), h.log.last);
@@ -356,6 +376,31 @@ static void test_callback(void **state) {
   destroy(0);
 }
 
+/* A result that the host still has bound may be made anew or destroyed: the binding becomes 0, as GL has it, and nothing fails. */
+static void test_deleted_while_bound(void **state) {
+  (void)state;
+  for (int k = 0; k < 2; k++) {
+    mode = k ? PN_STATE_SCOPED : PN_STATE_RESTORE;
+    run(creation, COUNT(creation), 0, NULL, NULL);
+    run(frame, COUNT(frame), 0, NULL, NULL);
+    for (int i = 0; i < LIGHTS; i++) assert_int_equal(resize(i), PN_OK);
+    assert_int_equal(gl_errors(), 0);
+    for (int i = 0; i < LIGHTS; i++) {
+      pn_image image;
+      assert_int_equal(pn_result_image(lights[i], receivers[0], &image), PN_OK);
+      if (k) assert_int_equal(end(0), PN_OK);
+      gl.ActiveTexture(GL_TEXTURE0 + (GLenum)i);
+      gl.BindTexture(GL_TEXTURE_2D, image.texture);
+      if (k) assert_int_equal(begin(0), PN_OK);
+      pn_light_destroy(&lights[i]);
+    }
+    run(closing, COUNT(closing), 0, NULL, NULL);
+    run(destruction + 1, 1, 0, NULL, NULL);
+    assert_int_equal(gl_errors(), 0);
+    gl.ActiveTexture(GL_TEXTURE0);
+  }
+}
+
 static int setup(void **state) {
   (void)state;
   if (!host_open(&h)) exit(77);
@@ -403,6 +448,7 @@ int main(void) {
       cmocka_unit_test_teardown(test_restore, clean),       cmocka_unit_test_teardown(test_restore_viewports, clean),
       cmocka_unit_test_teardown(test_scoped, clean),        cmocka_unit_test_teardown(test_reset, clean),
       cmocka_unit_test_teardown(test_reads_nothing, clean), cmocka_unit_test_teardown(test_callback, clean),
+      cmocka_unit_test_teardown(test_deleted_while_bound, clean),
   };
   return cmocka_run_group_tests_name("state", tests, setup, teardown);
 }
