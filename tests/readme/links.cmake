@@ -1,0 +1,15 @@
+# Every relative link of README.md and docs/ leads to a file.
+cmake_minimum_required(VERSION 3.22)
+file(GLOB_RECURSE pages "${ROOT}/docs/*.md")
+foreach(page IN LISTS pages ITEMS "${ROOT}/README.md")
+  file(READ "${page}" text)
+  string(REPLACE ";" "," text "${text}") # a list of matches follows
+  get_filename_component(folder "${page}" DIRECTORY)
+  string(REGEX MATCHALL "\\]\\([^)]*\\)" links "${text}")
+  foreach(link IN LISTS links)
+    string(REGEX REPLACE "^\\]\\(([^)#]*).*\\)$" "\\1" target "${link}")
+    if(target AND NOT target MATCHES "^[a-z]+:" AND NOT EXISTS "${folder}/${target}")
+      message(SEND_ERROR "${page}: ${target} does not exist")
+    endif()
+  endforeach()
+endforeach()
