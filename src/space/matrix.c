@@ -36,41 +36,38 @@ void pn_matrix_point(const pn_matrix *a, const double in[3], double out[3]) {
   memcpy(out, result, 3 * sizeof *out);
 }
 
-/* Below this a pivot of a matrix whose rows and columns have a largest entry of 1 is rounding, grown by at most 8 on the way. */
-static const double no_pivot = 0x1p-46;
+/* An inverse this large, of a matrix whose rows and columns have a largest entry of 1, is made of rounding. */
+static const double no_inverse = 0x1p46;
 
-/* Columns to a largest entry of 1 too; false when one is zero. */
-static bool scale_columns(double rows[4][8], double scale[4]) {
-  for (int c = 0; c < 4; c++) {
+/* Scales rows, then columns, to a largest entry of 1, so that units do not decide what singular means. */
+static bool equilibrate(double rows[4][8], double scales[8]) {
+  for (int k = 0; k < 8; k++) {
     double largest = 0;
-    for (int r = 0; r < 4; r++) largest = fmax(largest, fabs(rows[r][c]));
+    for (int i = 0; i < 4; i++) {
+      double value = k < 4 ? rows[k][i] : rows[i][k - 4];
+      if (!isfinite(value)) return false;
+      largest = fmax(largest, fabs(value));
+    }
     if (largest == 0) return false;
-    scale[c] = 1 / largest;
-    for (int r = 0; r < 4; r++) rows[r][c] *= scale[c];
+    scales[k] = 1 / largest;
+    for (int i = 0; i < 4; i++) *(k < 4 ? &rows[k][i] : &rows[i][k - 4]) *= scales[k];
   }
   return true;
 }
 
-/* Gauss-Jordan with row pivoting on [a | 1]; rows and columns are scaled first, so that units do not decide what singular means. */
+/* Gauss-Jordan with row pivoting on [a | 1]. */
 bool pn_matrix_invert(const pn_matrix *a, pn_matrix *out) {
-  double rows[4][8] = {{0}}, scales[4];
+  double rows[4][8] = {{0}}, scales[8];
   for (int r = 0; r < 4; r++) {
-    double largest = 0;
-    for (int c = 0; c < 4; c++) {
-      rows[r][c] = a->m[4 * c + r];
-      if (!isfinite(rows[r][c])) return false;
-      largest = fmax(largest, fabs(rows[r][c]));
-    }
-    if (largest == 0) return false;
+    for (int c = 0; c < 4; c++) rows[r][c] = a->m[4 * c + r];
     rows[r][4 + r] = 1;
-    for (int c = 0; c < 8; c++) rows[r][c] /= largest;
   }
-  if (!scale_columns(rows, scales)) return false;
+  if (!equilibrate(rows, scales)) return false;
   for (int c = 0; c < 4; c++) {
     int pivot = c;
     for (int r = c + 1; r < 4; r++)
       if (fabs(rows[r][c]) > fabs(rows[pivot][c])) pivot = r;
-    if (fabs(rows[pivot][c]) < no_pivot) return false;
+    if (fabs(rows[pivot][c]) < 1e-300) return false;
     double swap[8];
     memcpy(swap, rows[c], sizeof swap);
     memcpy(rows[c], rows[pivot], sizeof swap);
@@ -84,7 +81,8 @@ bool pn_matrix_invert(const pn_matrix *a, pn_matrix *out) {
   }
   for (int r = 0; r < 4; r++)
     for (int c = 0; c < 4; c++) {
-      out->m[4 * c + r] = scales[r] * rows[r][4 + c];
+      if (!(fabs(rows[r][4 + c]) < no_inverse)) return false;
+      out->m[4 * c + r] = scales[4 + r] * rows[r][4 + c] * scales[c];
       if (!isfinite(out->m[4 * c + r])) return false;
     }
   return true;
