@@ -126,6 +126,12 @@ pn_result pn_timing(pn_context *context, int enabled) {
   return PN_OK;
 }
 
+pn_result pn_debug(pn_context *context, int enabled) {
+  if (!context) return PN_ERROR_ARGUMENT;
+  context->gpu.debug = enabled != 0;
+  return PN_OK;
+}
+
 static int at_most(int value, int limit) { return value < limit ? value : limit; }
 
 pn_result pn_context_info(const pn_context *context, pn_info *out) {

@@ -29,7 +29,8 @@ static const char *keep_text(pn_context *context, const char *key, char *text) {
 }
 
 static const char *forward_text(pn_context *context, const char *path, const char *more, const char *defines) {
-  const char *key = more ? more : path;
+  char key[PN_TECHNIQUE_DEFINES + 160];
+  snprintf(key, sizeof key, "%s %s %s", path, more ? more : "", defines);
   const char *known = kept_text(context, key);
   if (known && !context->gpu.shader_directory) return known;
   char *text = NULL;
@@ -58,8 +59,9 @@ const char *pn_glsl(pn_context *context, const char *spec, int glsl_version, int
     pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_FORWARD, "technique %s has no forward form", table->name);
     return NULL;
   }
-  char defines[32];
-  snprintf(defines, sizeof defines, "PN_LIGHTS %d\n", PN_FORWARD_LIGHTS_MAX);
+  char own[PN_TECHNIQUE_DEFINES], defines[PN_TECHNIQUE_DEFINES + 32];
+  pn_technique_defines(technique, values, own);
+  snprintf(defines, sizeof defines, "PN_LIGHTS %d\n%s", PN_FORWARD_LIGHTS_MAX, own);
   return forward_text(context, "shaders/forward.glsl", technique->shader, defines);
 }
 
@@ -103,7 +105,7 @@ static void set_units(pn_gpu *gpu, pn_gl program, int count, int first) {
 static void bind_textures(pn_gpu *gpu, pn_light *const *lights, int count, int first) {
   for (int i = 0; i < count; i++) {
     pn_bind_texture(gpu, first + 2 * i, GL_TEXTURE_2D_ARRAY, lights[i]->maps.depth.id, false);
-    pn_bind_texture(gpu, first + 2 * i + 1, GL_TEXTURE_2D_ARRAY, lights[i]->maps.pyramid.id, false);
+    pn_bind_texture(gpu, first + 2 * i + 1, GL_TEXTURE_2D_ARRAY, lights[i]->maps.range.id, false);
   }
 }
 

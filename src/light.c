@@ -157,12 +157,14 @@ pn_result pn_prepare(pn_context *context, const char *spec) {
   if (pn_technique_parse(spec ? spec : "pcss", &table, values, why, sizeof why) != PN_OK)
     return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_TECHNIQUE_UNKNOWN, "%s", why);
   const pn_technique_class *technique = pn_technique_class_of(table);
+  char defines[PN_TECHNIQUE_DEFINES];
   pn_maps_want want;
   technique->want(values, &want);
+  pn_technique_defines(technique, values, defines);
   pn_enter(context);
   pn_result result = pn_maps_prepare(gpu, &want);
   if (result == PN_OK)
-    result = technique->prepare ? technique->prepare(gpu, values) : pn_gather_prepare(gpu, technique->shader);
+    result = technique->prepare ? technique->prepare(gpu, values) : pn_gather_prepare(gpu, technique->shader, defines);
   return pn_leave(context, result);
 }
 
@@ -240,9 +242,9 @@ static pn_result draw_maps(pn_light *light, const pn_maps_want *want) {
     result = pn_maps_draw(gpu, maps, &draw);
   }
   pn_clock_mark(gpu, &light->clock, "depth_map");
-  if (result != PN_OK || !want->range) return result;
+  if (result != PN_OK || !want->range.structure) return result;
   result = bind_block(light);
-  if (result == PN_OK) result = pn_maps_build_range(gpu, maps);
+  if (result == PN_OK) result = pn_range_build(gpu, maps);
   pn_clock_mark(gpu, &light->clock, "range");
   return result;
 }
@@ -286,7 +288,7 @@ pn_result pn_light_maps(const pn_light *light, pn_maps_info *out) {
       .width = light->desc.map_width, .height = light->desc.map_height,
       .s0 = (float)b[0], .t0 = (float)b[1], .s1 = (float)b[2], .t1 = (float)b[3],
       .w_near = (float)maps->fit.w_near, .w_far = (float)maps->fit.w_far,
-      .gpu_memory = maps->depth.bytes + maps->pyramid.bytes + maps->peel[0].bytes + maps->peel[1].bytes,
+      .gpu_memory = maps->depth.bytes + maps->range.bytes + maps->peel[0].bytes + maps->peel[1].bytes,
   };
   return PN_OK;
 }
@@ -328,7 +330,9 @@ static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pn_pair
   if (technique->shader) {
     result = bind_block(light);
     if (result != PN_OK) return result;
-    pn_gathering gathering = {gpu, technique->shader, &light->frame, &light->maps, receiver, pair, target};
+    char defines[PN_TECHNIQUE_DEFINES];
+    pn_technique_defines(technique, light->values, defines);
+    pn_gathering gathering = {gpu, technique->shader, defines, technique->searches, &light->frame, &light->maps, receiver, pair, target};
     return pn_gather(&gathering);
   }
   if (!is_alive(light->object.context, light->casters))
@@ -447,8 +451,9 @@ int pn_debug_image(pn_light *light, pn_receiver *receiver, int index, const char
   const pn_pair *pair = receiver ? pn_pair_find(&light->object, &receiver->object) : NULL;
   const struct { const char *name; const pn_texture *texture; } all[] = {
       {"depth", &light->maps.depth},
-      {"range", &light->maps.pyramid},
+      {"range", &light->maps.range},
       {"low", pair ? &pair->low : NULL},
+      {"search", pair ? &pair->search : NULL},
       {"visibility", pair ? &pair->image : NULL},
   };
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {

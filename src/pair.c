@@ -22,6 +22,7 @@ pn_pair *pn_pair_get(pn_object *light, pn_object *receiver) {
 static void free_pair(pn_gpu *gpu, pn_pair *pair, bool abandon) {
   pn_texture_free(gpu, &pair->image, abandon);
   pn_texture_free(gpu, &pair->low, abandon);
+  pn_texture_free(gpu, &pair->search, abandon);
   for (int i = 0; i < 2; i++) pn_texture_free(gpu, &pair->work[i], abandon);
   pn_clock_free(gpu, &pair->clock, abandon);
   pn_free(gpu, pair);

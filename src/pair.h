@@ -9,6 +9,7 @@ typedef struct pn_pair {
   pn_texture image;   /* the result */
   pn_texture low;     /* at reduced resolution, before it is brought up */
   pn_texture work[2]; /* a technique's own */
+  pn_texture search;  /* what a search did, when debugging */
   bool drawn;
   pn_clock clock;
   struct pn_pair *next;

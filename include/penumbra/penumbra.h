@@ -400,6 +400,10 @@ PN_API pn_result pn_result_image(pn_light *light, pn_receiver *receiver, pn_imag
  * or any colour-renderable format whose red channel will do. Written at the origin. */
 PN_API pn_result pn_visibility_into(pn_light *light, pn_receiver *receiver, pn_gl texture, int layer);
 
+/* Makes searching techniques tell what they did, as the debug image "search": red = class (0 no map was asked, 1 lit, 2 umbra, 3 penumbra), green = blocks visited,
+ * blue = primitives covered, alpha = texels in the search windows. Off at first; costs a second colour target. */
+PN_API pn_result pn_debug(pn_context *context, int enabled);
+
 /* Intermediate images, for looking at: index from 0 until it returns 0. receiver may be NULL: the light's maps only. */
 PN_API int pn_debug_image(pn_light *light, pn_receiver *receiver, int index, const char **name, pn_image *out);
 

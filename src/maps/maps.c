@@ -7,22 +7,6 @@ int pn_want_layers(const pn_maps_want *want) { return want->near_layers + (want-
 
 /* ---- textures ---- */
 
-static int pyramid_size(int size) {
-  int power = 1;
-  while (power < size) power *= 2;
-  return power > 1 ? power / 2 : 1;
-}
-
-static int level_count(int width, int height) {
-  int count = 1;
-  while (width > 1 || height > 1) {
-    width = width > 1 ? width / 2 : 1;
-    height = height > 1 ? height / 2 : 1;
-    count++;
-  }
-  return count;
-}
-
 pn_result pn_maps_shape(pn_gpu *gpu, pn_maps *maps, const pn_maps_want *want, int count, int width, int height) {
   int layers = pn_want_layers(want);
   pn_result result = pn_texture_shape(gpu, &maps->depth, GL_DEPTH_COMPONENT32F, width, height, layers * count, 1);
@@ -32,12 +16,7 @@ pn_result pn_maps_shape(pn_gpu *gpu, pn_maps *maps, const pn_maps_want *want, in
     else
       pn_texture_free(gpu, &maps->peel[i], false);
   }
-  if (result == PN_OK && want->range) {
-    int w = pyramid_size(width), h = pyramid_size(height);
-    result = pn_texture_shape(gpu, &maps->pyramid, GL_RG32F, w, h, layers * count, level_count(w, h));
-  } else if (result == PN_OK) {
-    pn_texture_free(gpu, &maps->pyramid, false);
-  }
+  if (result == PN_OK) result = pn_range_shape(gpu, &maps->range, &want->range, layers * count, width, height);
   if (result != PN_OK) return result;
   maps->want = *want;
   maps->layers = layers;
@@ -46,9 +25,10 @@ pn_result pn_maps_shape(pn_gpu *gpu, pn_maps *maps, const pn_maps_want *want, in
 
 void pn_maps_free(pn_gpu *gpu, pn_maps *maps, bool abandon) {
   pn_texture_free(gpu, &maps->depth, abandon);
-  pn_texture_free(gpu, &maps->pyramid, abandon);
+  pn_texture_free(gpu, &maps->range, abandon);
   pn_texture_free(gpu, &maps->peel[0], abandon);
   pn_texture_free(gpu, &maps->peel[1], abandon);
+  pn_texture_free(gpu, &maps->aside, abandon);
   memset(maps, 0, sizeof *maps);
 }
 
@@ -120,54 +100,10 @@ pn_result pn_maps_draw(pn_gpu *gpu, pn_maps *maps, const pn_map_draw *draw) {
   return result;
 }
 
-/* ---- the range pyramid ---- */
-
-static pn_result range_program(pn_gpu *gpu, bool first, const pn_program **out) {
-  pn_program_key key = {"shaders/screen.vert.glsl", "maps/range.frag.glsl", NULL, first ? "PN_FIRST 1\n" : "PN_FIRST 0\n"};
-  return pn_program_get(gpu, &key, out);
-}
-
-static pn_result draw_range(pn_gpu *gpu, pn_maps *maps, int array_layer, int level) {
-  const pn_program *program;
-  pn_texture *pyramid = &maps->pyramid;
-  pn_result result = range_program(gpu, level == 0, &program);
-  if (result != PN_OK) return result;
-  int width = pyramid->width >> level, height = pyramid->height >> level;
-  pn_pass pass = {.color = {{pyramid->id, pyramid->target, level, array_layer}}, .width = width ? width : 1,
-                  .height = height ? height : 1};
-  result = pn_screen_begin(gpu, &pass, program);
-  if (result != PN_OK) return result;
-  if (level > 0) { /* only the level below may be read, so that reading and drawing never meet */
-    pn_bind_texture(gpu, PN_UNIT_RANGE, pyramid->target, pyramid->id, true);
-    GL(gpu, TexParameteri)(pyramid->target, GL_TEXTURE_BASE_LEVEL, level - 1);
-    GL(gpu, TexParameteri)(pyramid->target, GL_TEXTURE_MAX_LEVEL, level - 1);
-  }
-  /* Base level shifts what the shader calls level 0. */
-  GLint source[4] = {array_layer, 0, array_layer / maps->layers, array_layer % maps->layers};
-  GL(gpu, Uniform4iv)(pn_uniform(program, "pn_source"), 1, source);
-  pn_draw_screen(gpu);
-  return PN_OK;
-}
-
-pn_result pn_maps_build_range(pn_gpu *gpu, pn_maps *maps) {
-  pn_texture *pyramid = &maps->pyramid;
-  pn_bind_texture(gpu, PN_UNIT_MAPS, maps->depth.target, maps->depth.id, false);
-  pn_result result = PN_OK;
-  for (int level = 0; level < pyramid->levels && result == PN_OK; level++)
-    for (int layer = 0; layer < pyramid->layers && result == PN_OK; layer++)
-      result = draw_range(gpu, maps, layer, level);
-  pn_bind_texture(gpu, PN_UNIT_RANGE, pyramid->target, pyramid->id, true);
-  GL(gpu, TexParameteri)(pyramid->target, GL_TEXTURE_BASE_LEVEL, 0);
-  GL(gpu, TexParameteri)(pyramid->target, GL_TEXTURE_MAX_LEVEL, pyramid->levels - 1);
-  return result;
-}
-
 pn_result pn_maps_prepare(pn_gpu *gpu, const pn_maps_want *want) {
-  const pn_program *program;
   pn_result result = pn_casters_prepare(gpu, false);
   if (result == PN_OK && want->near_layers > 1) result = pn_casters_prepare(gpu, true);
-  for (int first = 0; first < 2 && result == PN_OK && want->range; first++) result = range_program(gpu, first, &program);
-  return result;
+  return result == PN_OK ? pn_range_prepare(gpu, &want->range) : result;
 }
 
 /* ---- the uniform block ---- */
@@ -223,4 +159,4 @@ void pn_block_map(pn_light_block *block, const pn_gpu *gpu, const pn_map_draw *d
   block->range[2] = fmaxf(block->range[2], error);
 }
 
-_Static_assert(sizeof(pn_light_block) == (6 + 2 + 2 * PN_MAPS_MAX) * 16, "std140 layout of pn_LightData");
+_Static_assert(sizeof(pn_light_block) == (6 + 3 + 2 * PN_MAPS_MAX) * 16, "std140 layout of pn_LightData");

@@ -13,7 +13,7 @@ struct pn_LightData {
   vec4 extent;                     // A_u, A_v, 1 for a sun, unused
   vec4 maps;                       // number of tiles, layers of each, width, height
   vec4 range;                      // w of the nearest caster's plane, w_far, error of a stored depth in w, raster error in texels
-  vec4 parameters[2];              // the technique's, in the order of its table
+  vec4 parameters[3];              // the technique's, in the order of its table
   vec4 map_bounds[PN_MAPS_MAX];    // s0, t0, texels per unit of s, of t
   vec4 map_depth[PN_MAPS_MAX];     // w at depth 0, w per depth, shear
 };

@@ -4,14 +4,22 @@
 
 #include "maps/fit.h"
 
-enum { PN_MAPS_MAX = 16, PN_LAYERS_MAX = 16, PN_PARAMETERS_MAX = 8 };
+enum { PN_MAPS_MAX = 16, PN_LAYERS_MAX = 16, PN_PARAMETERS_MAX = 12 };
+
+/* Largest and smallest w of neighbourhoods: a pyramid (the papers' HSM: level i over blocks of 2^(i+1) texels a side) or a stack (their
+ * MSSM: level i over the 2^i x 2^i texels centred on each texel, at full resolution). Over quads, each texel brings its right and upper neighbours. */
+typedef enum { PN_RANGE_NONE = 0, PN_RANGE_PYRAMID, PN_RANGE_STACK } pn_range_structure;
+typedef struct {
+  pn_range_structure structure;
+  bool quads;
+} pn_range_kind;
 
 /* What a technique wants to have drawn. In the array texture, a map's layers are: near surfaces first, nearest to farther, then the farthest one. */
 typedef struct {
   int near_layers;      /* peeled layers from the nearest; 0..PN_LAYERS_MAX */
   bool farthest;        /* the farthest surface, as the last layer */
   pn_faces near_faces, far_faces; /* which surfaces count: PN_FACES_ANY where it does not matter */
-  bool range;           /* the range pyramid of every layer */
+  pn_range_kind range;  /* what summarises every layer */
 } pn_maps_want;
 
 /* The uniform block of maps.glsl, std140. */
@@ -19,14 +27,14 @@ typedef struct {
   float scene_u[4], scene_v[4], scene_z[4];
   float extent[4];
   float maps[4];
-  float range[4];
+  float range[4]; /* pn_LightData.range: not the pyramid */
   float parameters[PN_PARAMETERS_MAX];
   float map_bounds[PN_MAPS_MAX][4];
   float map_depth[PN_MAPS_MAX][4];
 } pn_light_block;
 
 typedef struct {
-  pn_texture depth, pyramid, peel[2];
+  pn_texture depth, range, peel[2], aside; /* aside: a level of the stack while it is drawn */
   pn_maps_want want;
   pn_fit_result fit;
   int layers;           /* of each map */
@@ -47,8 +55,10 @@ typedef struct {
   double bounds[4], w_near, w_far, shear[2];
 } pn_map_draw;
 pn_result pn_maps_draw(pn_gpu *gpu, pn_maps *maps, const pn_map_draw *draw);
-/* Fills the pyramid from what was drawn; the block must be bound. */
-pn_result pn_maps_build_range(pn_gpu *gpu, pn_maps *maps);
+/* Fills pyramid or stack from what was drawn; the block must be bound. (maps/range.c) */
+pn_result pn_range_build(pn_gpu *gpu, pn_maps *maps);
+pn_result pn_range_shape(pn_gpu *gpu, pn_texture *texture, const pn_range_kind *kind, int layers, int width, int height);
+pn_result pn_range_prepare(pn_gpu *gpu, const pn_range_kind *kind);
 pn_result pn_maps_prepare(pn_gpu *gpu, const pn_maps_want *want);
 /* The parts of the block that do not depend on single maps. count: of maps. */
 void pn_block_frame(pn_light_block *block, const pn_frame *frame, const pn_gpu *gpu, int count, int layers, int width,

@@ -1,4 +1,6 @@
-// The range pyramid: the largest and smallest w of 2 x 2 texels of the level below; the first level reads the depth map.
+// Largest and smallest w of neighbourhoods. A pyramid's level takes 2 x 2 texels of the one below; a stack's level four texels of the one below,
+// half a neighbourhood apart (Bitmask Soft Shadows, Fig. 7). The first level reads the depth map; over quads each texel there
+// stands for itself and its right and upper neighbours.
 #include "shaders/precision.glsl"
 #if PN_FIRST
 #include "maps/maps.glsl"
@@ -6,23 +8,44 @@ uniform highp sampler2DArray pn_maps;
 #else
 uniform highp sampler2DArray pn_range;
 #endif
-uniform ivec4 pn_source; // array layer, level below, map, layer in the map
+uniform ivec4 pn_source; // layer in the array of maps, level drawn, map, layer in the map
+uniform ivec4 pn_place;  // stack: array layer of the level below, level drawn
 layout(location = 0) out vec4 pn_out;
 
-void main() {
-  ivec2 base = ivec2(gl_FragCoord.xy) * 2;
-  vec2 range = vec2(-1e30, 1e30);
-  for (int i = 0; i < 4; i++) {
-    ivec2 at = base + ivec2(i & 1, i >> 1);
+vec2 pn_join(vec2 a, vec2 b) { return vec2(max(a.x, b.x), min(a.y, b.y)); }
+
 #if PN_FIRST
-    // A border beyond the map holds nothing, and says so in its smallest w too.
-    float w = pn_map_fetch(0, pn_maps, pn_source.z, pn_source.w, at);
-    vec2 below = vec2(w);
-#else
-    ivec2 last = textureSize(pn_range, pn_source.y).xy - 1;
-    vec2 below = texelFetch(pn_range, ivec3(min(at, last), pn_source.x), pn_source.y).rg;
+vec2 pn_texels(ivec2 at, int size) {
+  vec2 range = vec2(-1e30, 1e30);
+  for (int y = 0; y < size; y++)
+    for (int x = 0; x < size; x++)
+      // Beyond the map nothing is, and the smallest w says so too.
+      range = pn_join(range, vec2(pn_map_fetch(0, pn_maps, pn_source.z, pn_source.w, at + ivec2(x, y))));
+  return range;
+}
 #endif
-    range = vec2(max(range.x, below.x), min(range.y, below.y));
-  }
+
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+#if PN_FIRST && PN_STACK
+  vec2 range = pn_texels(at, PN_QUADS + 1);
+#elif PN_FIRST
+  vec2 range = pn_texels(2 * at, PN_QUADS + 2);
+#elif PN_STACK
+  // Level i lies centred: from 2^(i-1) before the texel to 2^(i-1) - 1 after it. Its four parts of level i - 1 are centred a quarter
+  // aside; the first level's parts are the texel and those before it. The border is clamped.
+  ivec2 last = textureSize(pn_range, 0).xy - 1;
+  int step = pn_place.y > 1 ? 1 << (pn_place.y - 2) : 0;
+  ivec2 a = clamp(at - (pn_place.y > 1 ? step : 1), ivec2(0), last), b = clamp(at + step, ivec2(0), last);
+  vec2 range = texelFetch(pn_range, ivec3(a, pn_place.x), 0).rg;
+  range = pn_join(range, texelFetch(pn_range, ivec3(b.x, a.y, pn_place.x), 0).rg);
+  range = pn_join(range, texelFetch(pn_range, ivec3(a.x, b.y, pn_place.x), 0).rg);
+  range = pn_join(range, texelFetch(pn_range, ivec3(b, pn_place.x), 0).rg);
+#else
+  ivec2 last = textureSize(pn_range, 0).xy - 1;
+  vec2 range = vec2(-1e30, 1e30);
+  for (int i = 0; i < 4; i++)
+    range = pn_join(range, texelFetch(pn_range, ivec3(min(2 * at + ivec2(i & 1, i >> 1), last), pn_source.x), 0).rg);
+#endif
   pn_out = vec4(range, 0.0, 1.0);
 }

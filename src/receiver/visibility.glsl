@@ -8,6 +8,10 @@
 uniform highp sampler2DArray pn_maps;
 uniform highp sampler2DArray pn_range; // the range pyramid, for techniques that want it
 layout(location = 0) out vec4 pn_out;
+#if PN_DEBUG
+layout(location = 1) out vec4 pn_search_out;
+vec4 pn_search_report();
+#endif
 
 float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r);
 
@@ -31,4 +35,7 @@ void main() {
   float v = pn_pixel_visibility(min(at * pn_offset.z + pn_offset.w, pn_view.zw - 1));
 #endif
   pn_out = vec4(v, v, v, 1.0);
+#if PN_DEBUG
+  pn_search_out = pn_search_report();
+#endif
 }

@@ -2,11 +2,15 @@
 
 #include <stdio.h>
 
-static pn_result gather_program(pn_gpu *gpu, const char *shader, const char *receiver_defines, bool upsample,
-                                const pn_program **out) {
-  char defines[128];
-  snprintf(defines, sizeof defines, "%sPN_UPSAMPLE %d\n", receiver_defines, upsample);
-  pn_program_key key = {"shaders/screen.vert.glsl", "receiver/visibility.glsl", shader, defines};
+typedef struct {
+  const char *shader, *technique, *receiver; /* the technique's shader and defines, the receiver's defines */
+  bool upsample, debug;
+} gather_variant;
+
+static pn_result gather_program(pn_gpu *gpu, const gather_variant *v, const pn_program **out) {
+  char defines[512];
+  snprintf(defines, sizeof defines, "%s%sPN_UPSAMPLE %d\nPN_DEBUG %d\n", v->technique, v->receiver, v->upsample, v->debug);
+  pn_program_key key = {"shaders/screen.vert.glsl", "receiver/visibility.glsl", v->shader, defines};
   return pn_program_get(gpu, &key, out);
 }
 
@@ -14,14 +18,18 @@ static pn_result draw(const pn_gathering *g, pn_attachment target, int width, in
   char defines[PN_RECEIVER_DEFINES];
   const pn_program *program;
   pn_receiver_defines(g->receiver, defines);
-  pn_result result = gather_program(g->gpu, g->shader, defines, upsample, &program);
+  bool debug = g->gpu->debug && g->searches && !upsample;
+  gather_variant variant = {g->shader, g->defines, defines, upsample, debug};
+  pn_result result = gather_program(g->gpu, &variant, &program);
+  if (result == PN_OK && debug) result = pn_texture_shape(g->gpu, &g->pair->search, GL_RGBA32F, width, height, 0, 1);
   if (result != PN_OK) return result;
   pn_pass pass = {.color = {target}, .width = width, .height = height};
+  if (debug) pass.color[1] = (pn_attachment){g->pair->search.id, GL_TEXTURE_2D, 0, 0};
   result = pn_screen_begin(g->gpu, &pass, program);
   if (result != PN_OK) return result;
   pn_receiver_bind(g->receiver, program, g->frame, scale);
   pn_bind_texture(g->gpu, PN_UNIT_MAPS, GL_TEXTURE_2D_ARRAY, g->maps->depth.id, false);
-  if (g->maps->pyramid.id) pn_bind_texture(g->gpu, PN_UNIT_RANGE, GL_TEXTURE_2D_ARRAY, g->maps->pyramid.id, false);
+  if (g->maps->range.id) pn_bind_texture(g->gpu, PN_UNIT_RANGE, GL_TEXTURE_2D_ARRAY, g->maps->range.id, false);
   if (upsample) pn_bind_texture(g->gpu, PN_UNIT_WORK, GL_TEXTURE_2D, g->pair->low.id, false);
   pn_draw_screen(g->gpu);
   return PN_OK;
@@ -46,12 +54,13 @@ pn_result pn_gather(const pn_gathering *g) {
   return result;
 }
 
-pn_result pn_gather_prepare(pn_gpu *gpu, const char *shader) {
+pn_result pn_gather_prepare(pn_gpu *gpu, const char *shader, const char *defines) {
   static const char *const receivers[] = {"PN_NORMALS 0\nPN_MASK 0\n", "PN_NORMALS 1\nPN_MASK 0\n"};
   pn_result result = PN_OK;
   for (int i = 0; i < 2 && result == PN_OK; i++) {
     const pn_program *program;
-    result = gather_program(gpu, shader, receivers[i], false, &program);
+    gather_variant variant = {shader, defines, receivers[i], false, false};
+    result = gather_program(gpu, &variant, &program);
   }
   return result;
 }

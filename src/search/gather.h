@@ -8,7 +8,9 @@
 
 typedef struct {
   pn_gpu *gpu;
-  const char *shader; /* the technique's, with pn_technique() */
+  const char *shader;  /* the technique's, with pn_technique() */
+  const char *defines; /* and what it depends on */
+  bool searches;       /* it tells what its search did, when debugging */
   const pn_frame *frame;
   pn_maps *maps;
   pn_receiver *receiver;
@@ -18,6 +20,6 @@ typedef struct {
 
 pn_result pn_gather(const pn_gathering *gathering);
 /* Compiles for receivers as most hosts set them: with and without normals, full resolution. */
-pn_result pn_gather_prepare(pn_gpu *gpu, const char *shader);
+pn_result pn_gather_prepare(pn_gpu *gpu, const char *shader, const char *defines);
 
 #endif

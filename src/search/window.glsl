@@ -2,7 +2,7 @@
 #include "receiver/receiver.glsl"
 
 // Largest and smallest w in a window of texels (both ends included), from the pyramid whose level i has them over 2^(i+1) x 2^(i+1) texels. Four samples of the coarsest level that is still no larger than the window.
-vec2 pn_range_over(int light, highp sampler2DArray pyramid, int map, ivec2 low, ivec2 high) {
+vec2 pn_range_over(int light, highp sampler2DArray pyramid, int map, int layer, ivec2 low, ivec2 high) {
   ivec2 last = pn_map_size(light) - 1;
   if (any(lessThan(high, ivec2(0))) || any(greaterThan(low, last))) return vec2(PN_NOTHING);
   low = max(low, ivec2(0));
@@ -10,14 +10,14 @@ vec2 pn_range_over(int light, highp sampler2DArray pyramid, int map, ivec2 low, 
   int extent = max(high.x - low.x, high.y - low.y);
   int level = 0;
   while ((extent >> (level + 1)) > 1) level++;
-  int layer = map * pn_map_layers(light);
+  int array_layer = map * pn_map_layers(light) + layer;
   ivec2 a = low >> (level + 1), b = high >> (level + 1);
   // The window may touch three blocks along an axis where it is not aligned; the one between is then read as well.
   ivec2 c = (a + b) >> 1;
   vec2 range = vec2(PN_NOTHING, -PN_NOTHING);
   for (int i = 0; i < 9; i++) {
     ivec2 at = ivec2(i % 3 == 0 ? a.x : i % 3 == 1 ? c.x : b.x, i / 3 == 0 ? a.y : i / 3 == 1 ? c.y : b.y);
-    vec2 w = texelFetch(pyramid, ivec3(at, layer), level).rg;
+    vec2 w = texelFetch(pyramid, ivec3(at, array_layer), level).rg;
     range = vec2(max(range.x, w.x), min(range.y, w.y));
   }
   return range;
@@ -33,7 +33,7 @@ float pn_window_nearest(int light, highp sampler2DArray pyramid, pn_Receiver r) 
     for (int map = 0; map < pn_map_count(light); map++) {
       ivec2 low = ivec2(floor(pn_map_texel(light, map, r.m.xy - window)));
       ivec2 high = ivec2(floor(pn_map_texel(light, map, r.m.xy + window)));
-      found = max(found, pn_range_over(light, pyramid, map, low, high).x);
+      found = max(found, pn_range_over(light, pyramid, map, 0, low, high).x);
     }
     w_max = found;
     if (w_max <= r.m.z + r.epsilon_w) break;

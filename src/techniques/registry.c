@@ -7,7 +7,8 @@
 #include <string.h>
 
 static const pn_technique_class *const classes[] = {
-    &pn_technique_hard, &pn_technique_pcf, &pn_technique_pcss, &pn_technique_average,
+    &pn_technique_hard, &pn_technique_pcf, &pn_technique_pcss, &pn_technique_average, &pn_technique_backprojection,
+    &pn_technique_bitmask,
 };
 enum { COUNT = sizeof classes / sizeof *classes };
 
@@ -121,15 +122,40 @@ static pn_result read_pair(const pn_technique *t, char *pair, double *values, co
   if (!value) return explain(e, "technique %s: '%s' is not key=value", t->name, pair);
   *value++ = 0;
   int index = find_parameter(t, pair);
-  snprintf(named, sizeof named, "technique %s: parameter '%s'", t->name, pair);
+  snprintf(named, sizeof named, "technique %s: parameter '%.60s'", t->name, pair);
   if (index < 0) {
     list_parameters(t, list);
     return explain(e, "%s is unknown; %s", named, list);
   }
   if (read_value(&t->parameters[index], value, &values[index])) return PN_OK;
   describe_values(&t->parameters[index], list);
-  snprintf(named, sizeof named, "technique %s: %s=%.40s", t->name, pair, value);
+  snprintf(named, sizeof named, "technique %s: %.60s=%.40s", t->name, pair, value);
   return explain(e, "%s is no value; it takes %s", named, list);
+}
+
+static pn_result read_all_pairs(const pn_technique *t, const char *text, double *values, const explanation *e) {
+  char copy[512];
+  strcpy(copy, text);
+  for (char *pair = copy, *next; pair; pair = next) {
+    next = strchr(pair, ',');
+    if (next) *next++ = 0;
+    pn_result result = read_pair(t, pair, values, e);
+    if (result != PN_OK) return result;
+  }
+  return PN_OK;
+}
+
+/* A preset is the ground that the other parameters stand on, wherever it is named: read once to find it, and again on top of it. */
+static pn_result read_pairs(const pn_technique *t, const char *text, double *values, const explanation *e) {
+  if (!text) return PN_OK;
+  const pn_technique_class *technique = pn_technique_class_of(t);
+  double first[PN_PARAMETERS_MAX];
+  memcpy(first, values, sizeof first);
+  pn_result result = read_all_pairs(t, text, first, e);
+  if (result != PN_OK || !technique->preset) return read_all_pairs(t, text, values, e);
+  technique->preset((int)first[0], values);
+  values[0] = first[0];
+  return read_all_pairs(t, text, values, e);
 }
 
 pn_result pn_technique_parse(const char *spec, const pn_technique **technique, double *values, char *why, size_t why_size) {
@@ -148,13 +174,8 @@ pn_result pn_technique_parse(const char *spec, const pn_technique **technique, d
   }
   double read[PN_PARAMETERS_MAX];
   for (int i = 0; i < t->parameter_count; i++) read[i] = t->parameters[i].initial;
-  while (rest) {
-    char *next = strchr(rest, ',');
-    if (next) *next++ = 0;
-    pn_result result = read_pair(t, rest, read, &e);
-    if (result != PN_OK) return result;
-    rest = next;
-  }
+  pn_result result = read_pairs(t, rest, read, &e);
+  if (result != PN_OK) return result;
   if (technique) *technique = t;
   if (values) memcpy(values, read, (size_t)t->parameter_count * sizeof *values);
   return PN_OK;
@@ -165,5 +186,12 @@ bool pn_parameter_set(const pn_technique *t, const char *name, double value, dou
   *message = index < 0 ? PN_MESSAGE_PARAMETER_UNKNOWN : PN_MESSAGE_PARAMETER_VALUE;
   if (index < 0 || !value_in_range(&t->parameters[index], value)) return false;
   values[index] = value;
+  const pn_technique_class *technique = pn_technique_class_of(t);
+  if (index == 0 && technique->preset) technique->preset((int)value, values);
   return true;
+}
+
+void pn_technique_defines(const pn_technique_class *technique, const double *values, char out[PN_TECHNIQUE_DEFINES]) {
+  out[0] = 0;
+  if (technique->defines) technique->defines(values, out);
 }

@@ -7,7 +7,7 @@ static const pn_parameter parameters[] = {
 
 static void want(const double *values, pn_maps_want *out) {
   (void)values;
-  *out = (pn_maps_want){.near_layers = 1, .range = true};
+  *out = (pn_maps_want){.near_layers = 1, .range = {PN_RANGE_PYRAMID, false}};
 }
 
 const pn_technique_class pn_technique_pcss = {

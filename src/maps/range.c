@@ -1,0 +1,129 @@
+/* Largest and smallest w of neighbourhoods of every layer: the range pyramid and the range stack. */
+#include "maps/maps.h"
+
+#include <stdio.h>
+
+/* ---- shapes ---- */
+
+static int power_above(int size) {
+  int power = 1;
+  while (power < size) power *= 2;
+  return power;
+}
+
+static int level_count(int size) {
+  int count = 1;
+  for (; size > 1; size /= 2) count++;
+  return count;
+}
+
+static int larger(int a, int b) { return a > b ? a : b; }
+
+/* The pyramid's first level covers 2 x 2 texels of a map padded to powers of two; the stack has every level at full size, as array layers. */
+pn_result pn_range_shape(pn_gpu *gpu, pn_texture *texture, const pn_range_kind *kind, int layers, int width, int height) {
+  if (kind->structure == PN_RANGE_PYRAMID) {
+    int w = larger(power_above(width) / 2, 1), h = larger(power_above(height) / 2, 1);
+    return pn_texture_shape(gpu, texture, GL_RG32F, w, h, layers, level_count(larger(w, h)));
+  }
+  if (kind->structure == PN_RANGE_STACK)
+    return pn_texture_shape(gpu, texture, GL_RG32F, width, height, layers * level_count(power_above(larger(width, height))), 1);
+  pn_texture_free(gpu, texture, false);
+  return PN_OK;
+}
+
+static pn_result range_program(pn_gpu *gpu, const pn_range_kind *kind, bool first, const pn_program **out) {
+  char defines[64];
+  snprintf(defines, sizeof defines, "PN_FIRST %d\nPN_STACK %d\nPN_QUADS %d\n", first, kind->structure == PN_RANGE_STACK,
+           kind->quads);
+  pn_program_key key = {"shaders/screen.vert.glsl", "maps/range.frag.glsl", NULL, defines};
+  return pn_program_get(gpu, &key, out);
+}
+
+pn_result pn_range_prepare(pn_gpu *gpu, const pn_range_kind *kind) {
+  const pn_program *program;
+  pn_result result = PN_OK;
+  for (int first = 0; first < 2 && result == PN_OK && kind->structure; first++)
+    result = range_program(gpu, kind, first, &program);
+  return result;
+}
+
+/* ---- drawing ---- */
+
+typedef struct {
+  pn_gpu *gpu;
+  pn_maps *maps;
+  int layer, level; /* of the depth maps' array; of pyramid or stack */
+} range_step;
+
+static pn_result begin(const range_step *s, pn_attachment target, int width, int height, const pn_program **program) {
+  pn_result result = range_program(s->gpu, &s->maps->want.range, s->level == 0, program);
+  if (result != PN_OK) return result;
+  pn_pass pass = {.color = {target}, .width = width, .height = height};
+  result = pn_screen_begin(s->gpu, &pass, *program);
+  if (result != PN_OK) return result;
+  GLint source[4] = {s->layer, s->level, s->layer / s->maps->layers, s->layer % s->maps->layers};
+  pn_bind_texture(s->gpu, PN_UNIT_MAPS, s->maps->depth.target, s->maps->depth.id, false);
+  GL(s->gpu, Uniform4iv)(pn_uniform(*program, "pn_source"), 1, source);
+  return PN_OK;
+}
+
+static pn_result draw_pyramid(const range_step *s) {
+  const pn_texture *range = &s->maps->range;
+  const pn_program *program;
+  int width = larger(range->width >> s->level, 1), height = larger(range->height >> s->level, 1);
+  pn_attachment target = {range->id, range->target, s->level, s->layer};
+  pn_result result = begin(s, target, width, height, &program);
+  if (result != PN_OK) return result;
+  if (s->level > 0) { /* only the level below may be read: reading and drawing never meet. The shader then calls it level 0 */
+    pn_bind_texture(s->gpu, PN_UNIT_RANGE, range->target, range->id, true);
+    GL(s->gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, s->level - 1);
+    GL(s->gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, s->level - 1);
+  }
+  pn_draw_screen(s->gpu);
+  return PN_OK;
+}
+
+/* A stack's levels are layers of one array, which GL 3.3 does not let a pass read and draw at once: each is drawn aside and copied in. */
+static pn_result draw_stack(const range_step *s, pn_texture *aside, int levels) {
+  pn_gpu *gpu = s->gpu;
+  const pn_texture *range = &s->maps->range;
+  const pn_program *program;
+  pn_attachment target = {aside->id, GL_TEXTURE_2D, 0, 0};
+  pn_result result = begin(s, target, range->width, range->height, &program);
+  if (result != PN_OK) return result;
+  GLint place[4] = {s->layer * levels + s->level - 1, s->level, 0, 0};
+  GL(gpu, Uniform4iv)(pn_uniform(program, "pn_place"), 1, place);
+  pn_bind_texture(gpu, PN_UNIT_RANGE, range->target, range->id, false);
+  pn_draw_screen(gpu);
+  GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, gpu->framebuffer);
+  GL(gpu, ReadBuffer)(GL_COLOR_ATTACHMENT0);
+  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_RANGE);
+  GL(gpu, CopyTexSubImage3D)
+  (range->target, 0, 0, 0, s->layer * levels + s->level, 0, 0, range->width, range->height);
+  return PN_OK;
+}
+
+static pn_result build_stack(pn_gpu *gpu, pn_maps *maps) {
+  int levels = level_count(power_above(larger(maps->range.width, maps->range.height)));
+  pn_result result = pn_texture_shape(gpu, &maps->aside, GL_RG32F, maps->range.width, maps->range.height, 0, 1);
+  for (int layer = 0; layer < maps->range.layers / levels; layer++)
+    for (int level = 0; level < levels && result == PN_OK; level++)
+      result = draw_stack(&(range_step){gpu, maps, layer, level}, &maps->aside, levels);
+  return result;
+}
+
+static pn_result build_pyramid(pn_gpu *gpu, pn_maps *maps) {
+  const pn_texture *range = &maps->range;
+  pn_result result = PN_OK;
+  for (int level = 0; level < range->levels; level++)
+    for (int layer = 0; layer < range->layers && result == PN_OK; layer++)
+      result = draw_pyramid(&(range_step){gpu, maps, layer, level});
+  pn_bind_texture(gpu, PN_UNIT_RANGE, range->target, range->id, true);
+  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, 0);
+  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, range->levels - 1);
+  return result;
+}
+
+pn_result pn_range_build(pn_gpu *gpu, pn_maps *maps) {
+  return maps->want.range.structure == PN_RANGE_STACK ? build_stack(gpu, maps) : build_pyramid(gpu, maps);
+}

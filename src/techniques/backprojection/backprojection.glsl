@@ -1,0 +1,36 @@
+// Soft shadow mapping by backprojection (Guennebaud, Barthe, Paulin 2006): the areas that micro-primitives hide of the light are added up. Primitives that
+// overlap on the light are counted twice: the fault that bit fields mend. Layers are therefore merged by maximum (Bitmask Soft Shadows, Fig. 9d).
+#include "search/primitive.glsl"
+
+#define pn_Cover float
+
+void pn_cover_rectangle(inout pn_Cover c, vec2 low, vec2 high) {
+  vec2 size = max(clamp(high, 0.0, 1.0) - clamp(low, 0.0, 1.0), 0.0);
+  c += size.x * size.y;
+}
+
+// Section 4: corners clamped to the light, which keeps neighbouring quads watertight; then the quad's area from its diagonals.
+void pn_cover_quad(inout pn_Cover c, vec2 p00, vec2 p10, vec2 p01, vec2 p11) {
+  vec2 a = clamp(p11, 0.0, 1.0) - clamp(p00, 0.0, 1.0), b = clamp(p01, 0.0, 1.0) - clamp(p10, 0.0, 1.0);
+  c += 0.5 * abs(a.x * b.y - a.y * b.x);
+}
+
+// A sum does not know where its parts lie.
+bool pn_is_covered(pn_Cover c, vec2 low, vec2 high) { return any(greaterThanEqual(clamp(low, 0.0, 1.0), clamp(high, 0.0, 1.0))); }
+
+bool pn_is_full(pn_Cover c) { return c >= 1.0; }
+
+#include "search/search.glsl"
+#include "search/horizon.glsl"
+
+float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r) {
+  float above = pn_area_above(pn_extent(light), r.n.xy, r.k);
+  if (above <= 0.0) return 1.0;
+  float most = 0.0;
+  for (int layer = 0; layer < pn_map_layers(light); layer++) {
+    float hidden = 0.0;
+    for (int map = 0; map < pn_map_count(light); map++) pn_search(light, maps, range, r, map, layer, hidden);
+    most = max(most, hidden);
+  }
+  return 1.0 - min(most / above, 1.0);
+}

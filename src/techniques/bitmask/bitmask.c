@@ -1,0 +1,76 @@
+#include <stdio.h>
+
+#include "search/parameters.h"
+#include "techniques/technique.h"
+
+enum { PRESET, SAMPLES, PRIMITIVE, MAPS, LAYERS, HIERARCHY, CAP, MERGE, COUNT };
+enum { SAMPLES_16J, SAMPLES_8, SAMPLES_16, SAMPLES_32 };
+enum { MAPS_FRONT, MAPS_TWO_SIDED, MAPS_LAYERS };
+
+static const char *const presets[] = {"fast", "good", "exact", NULL};
+static const char *const samples[] = {"16j", "8", "16", "32", NULL};
+static const char *const primitives[] = {"patch", "quad", "quad-exact", NULL};
+static const char *const maps[] = {"front", "two-sided", "layers", NULL};
+
+static const pn_parameter parameters[COUNT] = {
+    [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/bitmask.md", PN_CHOICE, 0,
+                2, 1, presets},
+    [SAMPLES] = {"samples", "", "points on the light: N x N, or 16 x 16 jittered", "section 3, Fig. 3", PN_CHOICE, 0, 3,
+                 SAMPLES_16J, samples},
+    [PRIMITIVE] = {"primitive", "", "what texels stand for: rectangles, or quads between texel centres, covered by the paper's rectangle or exactly",
+                   "section 4", PN_CHOICE, 0, 2, PN_PRIMITIVE_QUAD_EXACT, primitives},
+    [MAPS] = {"maps", "", "nearest surface, nearest and farthest, or peeled layers", "section 3.2", PN_CHOICE, 0, 2,
+              MAPS_TWO_SIDED, maps},
+    [LAYERS] = {"layers", "", "how many layers are peeled, with maps=layers", "section 3.2", PN_INT, 1, PN_LAYERS_MAX, 2, NULL},
+    [HIERARCHY] = {"hierarchy", "", "what narrows the search: range stack, range pyramid, nothing; with merge above 0 the pyramid",
+                   "section 5", PN_CHOICE, 0, 2, PN_HIERARCHY_MSSM, pn_hierarchy_names},
+    [CAP] = {"cap", "texels", "at most N x N primitives a pixel, coarser ones past it; 0 = no cap; with merge=0 only", "section 7", PN_INT, 0,
+             4096, 0, NULL},
+    [MERGE] = {"merge", "%", "blocks are one primitive where that moves no edge by more than this part of the light; 0 = every texel", "",
+               PN_FLOAT, 0, 50, 1, NULL},
+};
+
+static void preset(int choice, double *values) {
+  for (int i = 0; i < COUNT; i++) values[i] = parameters[i].initial;
+  values[PRESET] = choice;
+  if (choice == 0) { /* fast */
+    values[PRIMITIVE] = PN_PRIMITIVE_PATCH;
+    values[MERGE] = 2;
+  }
+  if (choice == 2) { /* exact */
+    values[SAMPLES] = SAMPLES_32;
+    values[MAPS] = MAPS_LAYERS;
+    values[LAYERS] = 6;
+    values[MERGE] = 0.5;
+  }
+}
+
+static pn_search_values search_values(const double *values) {
+  return (pn_search_values){.primitive = (pn_primitive)values[PRIMITIVE], .hierarchy = (pn_hierarchy)values[HIERARCHY],
+                            .gaps = false, .merge = values[MERGE], .merge_index = MERGE, .cap_index = CAP};
+}
+
+static void want(const double *values, pn_maps_want *out) {
+  pn_search_values search = search_values(values);
+  int kind = (int)values[MAPS];
+  *out = (pn_maps_want){.near_layers = kind == MAPS_LAYERS ? (int)values[LAYERS] : 1, .farthest = kind == MAPS_TWO_SIDED,
+                        .range = pn_search_range(&search)};
+}
+
+static void defines(const double *values, char out[PN_TECHNIQUE_DEFINES]) {
+  static const int codes[] = {[SAMPLES_16J] = 17, [SAMPLES_8] = 8, [SAMPLES_16] = 16, [SAMPLES_32] = 32};
+  pn_search_values search = search_values(values);
+  int length = pn_search_defines(&search, out, PN_TECHNIQUE_DEFINES);
+  snprintf(out + length, (size_t)(PN_TECHNIQUE_DEFINES - length), "PN_SAMPLES %d\n", codes[(int)values[SAMPLES]]);
+}
+
+const pn_technique_class pn_technique_bitmask = {
+    .table = {.name = "bitmask", .title = "bitmask soft shadows",
+              .help = "every occluder sets the bits of the light's sample points it hides; occluders fuse correctly",
+              .parameters = parameters, .parameter_count = COUNT, .forward = 1, .self_shadows = 1},
+    .want = want,
+    .preset = preset,
+    .shader = "techniques/bitmask/bitmask.glsl",
+    .defines = defines,
+    .searches = true,
+};

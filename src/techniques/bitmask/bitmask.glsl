@@ -1,0 +1,66 @@
+// Bitmask Soft Shadows (Schwarz and Stamminger 2007): every micro-primitive sets the bits of the light's sample points that it hides. Overlaps set the same
+// bits, so occluders fuse as they should, and any number of maps may add theirs.
+#include "techniques/bitmask/field.glsl"
+#include "search/primitive.glsl"
+
+#define pn_Cover pn_Field
+
+void pn_cover_rectangle(inout pn_Cover c, vec2 low, vec2 high) {
+  pn_Field f = pn_rectangle(low, high);
+  for (int i = 0; i < PN_WORDS; i++) c.bits[i] |= f.bits[i];
+}
+
+// Corners in the order (0, 0), (1, 0), (0, 1), (1, 1) of the map.
+void pn_cover_quad(inout pn_Cover c, vec2 p00, vec2 p10, vec2 p01, vec2 p11) {
+#if PN_PRIMITIVE == PN_QUAD_EXACT
+  pn_add_triangle(c, p00, p10, p01);
+  pn_add_triangle(c, p10, p11, p01);
+#else
+  // Section 4: the rectangle through the middles of the quad's edges.
+  vec2 x = 0.5 * vec2(p00.x + p01.x, p10.x + p11.x), y = 0.5 * vec2(p00.y + p10.y, p01.y + p11.y);
+  pn_cover_rectangle(c, vec2(min(x.x, x.y), min(y.x, y.y)), vec2(max(x.x, x.y), max(y.x, y.y)));
+#endif
+}
+
+// Whether everything in the rectangle is hidden already.
+bool pn_is_covered(pn_Cover c, vec2 low, vec2 high) {
+  pn_Field f = pn_rectangle(low, high);
+  uvec4 open = uvec4(0u);
+  for (int i = 0; i < PN_WORDS; i++) open |= f.bits[i] & ~c.bits[i];
+  return open == uvec4(0u);
+}
+
+bool pn_is_full(pn_Cover c) {
+  uvec4 closed = uvec4(0xffffffffu);
+  for (int i = 0; i < PN_WORDS; i++) closed &= c.bits[i];
+#if PN_GRID == 8
+  return closed.xy == uvec2(0xffffffffu);
+#else
+  return closed == uvec4(0xffffffffu);
+#endif
+}
+
+#include "search/search.glsl"
+
+float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r) {
+  pn_Cover hidden = pn_field_empty();
+  // Samples below the horizon count as hidden from the start, and are left out of the count at the end.
+  bool whole = dot(abs(r.n.xy), pn_extent(light)) < -r.k;
+  float total = float(PN_GRID * PN_GRID);
+  if (!whole) {
+    pn_Field above = pn_field_horizon(pn_extent(light), r.n.xy, r.k);
+    total = pn_field_count(above);
+    if (total == 0.0) return 1.0;
+    for (int i = 0; i < PN_WORDS; i++) hidden.bits[i] = ~above.bits[i];
+#if PN_GRID == 8
+    hidden.bits[0].zw = uvec2(0u);
+#endif
+  }
+  for (int map = 0; map < pn_map_count(light); map++)
+    for (int layer = 0; layer < pn_map_layers(light); layer++) {
+      pn_search(light, maps, range, r, map, layer, hidden);
+      if (pn_is_full(hidden)) return 0.0;
+    }
+  float below = float(PN_GRID * PN_GRID) - total;
+  return 1.0 - (pn_field_count(hidden) - below) / total;
+}

@@ -1,0 +1,153 @@
+// Bit fields over the light (Schwarz and Stamminger 2007, section 3): each bit is one sample point, set where something hides it.
+// Coordinates run from 0 to 1 over the light. PN_SAMPLES: 8, 16, 32 for regular grids of that many points a side, 17 for 16 x 16 jittered.
+//
+// Sample (i, j) of a regular grid lies at (i + 1/2, j + 1/2) / N. The jittered grid tiles the rotated-grid pattern of 2 x 2 points: its
+// offset along x depends on the row's parity alone, along y on the column's: (3/4 or 1/4, 1/4 or 3/4). So rectangles stay products of ranges.
+
+#if PN_SAMPLES == 17
+#define PN_GRID 16
+#else
+#define PN_GRID PN_SAMPLES
+#endif
+
+// Words: 8 x 8 keeps four rows in each of two words, 16 x 16 two rows in each of eight, 32 x 32 one row in each of 32.
+#if PN_GRID == 8
+#define PN_WORDS 1
+#elif PN_GRID == 16
+#define PN_WORDS 2
+#else
+#define PN_WORDS 8
+#endif
+
+struct pn_Field { uvec4 bits[PN_WORDS]; };
+
+// Bits from first up to, not including, last; 0 <= first, last <= 32.
+uint pn_bits_below(int n) { return n >= 32 ? 0xffffffffu : (1u << uint(n)) - 1u; }
+uint pn_bit_range(int first, int last) { return pn_bits_below(last) & ~pn_bits_below(first); }
+
+// Samples along one axis whose coordinates, at offset in their cells, lie in [low, high).
+uint pn_sample_range(float low, float high, float offset) {
+  ivec2 ends = ivec2(clamp(ceil(vec2(low, high) * float(PN_GRID) - offset), 0.0, float(PN_GRID)));
+  return pn_bit_range(ends.x, max(ends.x, ends.y));
+}
+
+// Rows (a bit for each) and, along a row, columns, to the words of the field. Columns come twice: for even and odd rows; rows too: for even and odd columns.
+// Regular grids pass the same twice.
+uvec4 pn_spread_rows(uint rows, int word) {
+#if PN_GRID == 8
+  // Two words of four rows; each row's bit becomes a byte.
+  uvec2 four = (uvec2(rows) >> uvec2(0u, 4u)) & 15u;
+  return uvec4(((four * 0x00204081u) & 0x01010101u) * 255u, 0u, 0u);
+#elif PN_GRID == 16
+  uvec4 two = (uvec4(rows) >> (uvec4(0u, 2u, 4u, 6u) + uint(8 * word))) & 3u;
+  return (two & 1u) * 0xffffu | (two >> 1u) * 0xffff0000u;
+#else
+  return ((uvec4(rows) >> (uvec4(0u, 1u, 2u, 3u) + uint(4 * word))) & 1u) * 0xffffffffu;
+#endif
+}
+
+uint pn_spread_columns(uint even_rows, uint odd_rows) {
+#if PN_GRID == 8
+  return even_rows * 0x01010101u;
+#elif PN_GRID == 16
+  return even_rows | odd_rows << 16;
+#else
+  return even_rows;
+#endif
+}
+
+const uint pn_even_columns = 0x55555555u;
+
+// The samples inside a rectangle.
+pn_Field pn_rectangle(vec2 low, vec2 high) {
+  pn_Field f;
+#if PN_SAMPLES == 17
+  uint columns = pn_spread_columns(pn_sample_range(low.x, high.x, 0.75), pn_sample_range(low.x, high.x, 0.25));
+  uint rows_even = pn_sample_range(low.y, high.y, 0.25), rows_odd = pn_sample_range(low.y, high.y, 0.75);
+  for (int i = 0; i < PN_WORDS; i++)
+    f.bits[i] = columns & (pn_spread_rows(rows_even, i) & pn_even_columns | pn_spread_rows(rows_odd, i) & ~pn_even_columns);
+#else
+  uint one = pn_sample_range(low.x, high.x, 0.5);
+  uint columns = pn_spread_columns(one, one), rows = pn_sample_range(low.y, high.y, 0.5);
+  for (int i = 0; i < PN_WORDS; i++) f.bits[i] = columns & pn_spread_rows(rows, i);
+#endif
+  return f;
+}
+
+// Ends, along x, of a convex polygon's slice at y, gathered edge by edge; edges are always taken upwards, so that two polygons that share one
+// find the same crossing and neither gap nor overlap is left between them.
+void pn_slice(inout vec2 ends, vec2 a, vec2 b, float y) {
+  if (b.y < a.y) {
+    vec2 swap = a;
+    a = b;
+    b = swap;
+  }
+  if (!(a.y <= y && y < b.y)) return;
+  float x = a.x + (y - a.y) * ((b.x - a.x) / (b.y - a.y));
+  ends = vec2(min(ends.x, x), max(ends.y, x));
+}
+
+uint pn_triangle_row(vec2 a, vec2 b, vec2 c, float y, float offset) {
+  vec2 ends = vec2(2.0, -2.0);
+  pn_slice(ends, a, b, y);
+  pn_slice(ends, b, c, y);
+  pn_slice(ends, c, a, y);
+  return ends.x < ends.y ? pn_sample_range(ends.x, ends.y, offset) : 0u;
+}
+
+// Adds the samples inside a triangle, row by row.
+void pn_add_triangle(inout pn_Field f, vec2 a, vec2 b, vec2 c) {
+  float low = min(a.y, min(b.y, c.y)), high = max(a.y, max(b.y, c.y));
+  int first = int(clamp(ceil(low * float(PN_GRID) - 0.75), 0.0, float(PN_GRID)));
+  int last = int(clamp(ceil(high * float(PN_GRID) - 0.25), 0.0, float(PN_GRID)));
+  for (int j = first; j < last; j++) {
+#if PN_SAMPLES == 17
+    float offset = (j & 1) == 0 ? 0.75 : 0.25;
+    uint columns = pn_triangle_row(a, b, c, (float(j) + 0.25) / 16.0, offset) & pn_even_columns |
+                   pn_triangle_row(a, b, c, (float(j) + 0.75) / 16.0, offset) & ~pn_even_columns;
+#else
+    uint columns = pn_triangle_row(a, b, c, (float(j) + 0.5) / float(PN_GRID), 0.5);
+#endif
+    uint spread = pn_spread_columns(columns, columns);
+    for (int i = 0; i < PN_WORDS; i++) f.bits[i] |= spread & pn_spread_rows(1u << uint(j), i);
+  }
+}
+
+pn_Field pn_field_empty() {
+  pn_Field f;
+  for (int i = 0; i < PN_WORDS; i++) f.bits[i] = uvec4(0u);
+  return f;
+}
+
+uvec4 pn_count_bits(uvec4 v) {
+  v = v - ((v >> 1u) & 0x55555555u);
+  v = (v & 0x33333333u) + ((v >> 2u) & 0x33333333u);
+  return (((v + (v >> 4u)) & 0x0f0f0f0fu) * 0x01010101u) >> 24u;
+}
+
+float pn_field_count(pn_Field f) {
+  uvec4 sum = uvec4(0u);
+  for (int i = 0; i < PN_WORDS; i++) sum += pn_count_bits(f.bits[i]);
+  return float(sum.x + sum.y + sum.z + sum.w);
+}
+
+// The samples above the receiver's horizon: where horizon = x x_L + y y_L - k is positive, x_L and y_L on the light.
+pn_Field pn_field_horizon(vec2 extent, vec2 n, float k) {
+  pn_Field f = pn_field_empty();
+  vec2 slope = 2.0 * extent * n;               // in coordinates from 0 to 1
+  float at = k + dot(extent, n);               // slope . p > at
+  for (int j = 0; j < PN_GRID; j++) {
+    uint columns = 0u;
+    for (int i = 0; i < PN_GRID; i++) {
+#if PN_SAMPLES == 17
+      vec2 p = vec2(float(i) + ((j & 1) == 0 ? 0.75 : 0.25), float(j) + ((i & 1) == 0 ? 0.25 : 0.75)) / 16.0;
+#else
+      vec2 p = (vec2(i, j) + 0.5) / float(PN_GRID);
+#endif
+      columns |= dot(slope, p) > at ? 1u << uint(i) : 0u;
+    }
+    uint spread = pn_spread_columns(columns, columns);
+    for (int w = 0; w < PN_WORDS; w++) f.bits[w] |= spread & pn_spread_rows(1u << uint(j), w);
+  }
+  return f;
+}
