@@ -7,9 +7,10 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "image.h"
 #include "message.h"
 #include "option_values.h"
-#include "image.h"
+#include "scene/vector.h"
 
 enum { SETUP_FILE_MAX = 64 << 20 };
 
@@ -157,15 +158,19 @@ static int get_word(struct reader *r, const cJSON *object, const char *key, cons
   return -1;
 }
 
-/* Files that only hold what the contract names have no target and no up: direction and v say the same. */
+/* Files that only hold what the contract names have no target and no up: direction and v say the same, and the target is as far as it was. */
 static void get_light(struct reader *r, const cJSON *object, struct light *light) {
   static const char *const types[] = {"rectangle", "sun", NULL};
+  double toward[3];
+  v3_sub(light->target, light->center, toward);
+  double distance = v3_length(toward);
   int type = get_word(r, object, "type", types, "\"rectangle\" or \"sun\"");
   if (type >= 0) light->shape = type ? PN_LIGHT_SUN : PN_LIGHT_RECTANGLE;
   get_numbers(r, object, "center", 3, light->center);
   if (!has(object, "target") && has(object, "direction")) {
-    get_numbers(r, object, "direction", 3, light->target);
-    for (int k = 0; k < 3; k++) light->target[k] += light->center[k];
+    get_numbers(r, object, "direction", 3, toward);
+    v3_normalize(toward);
+    v3_add_scaled(light->center, distance, toward, light->target);
   }
   get_numbers(r, object, "target", 3, light->target);
   get_numbers(r, object, "v", 3, light->up);

@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# What is right: forms of options, help everywhere, lists, and that a result's set-up makes the same picture again.
+. "$(dirname "$0")/common.sh"
+small="--size 48x36 --map 32 --frames 1 -t hard"
+
+for command in render compare study bench view list info help; do
+  for form in -h --help; do
+    run 0 $command $form
+    grep -q "^penumbra $command" out || fail "help of $command"
+    [ ! -s err ] || fail "help of $command on stderr"
+  done
+  run 0 help $command
+  grep -q "^penumbra $command" out || fail "help $command"
+done
+run 0 render --size 3x --help # help wins over what else is wrong
+run 0 --help
+run 0 -h
+run 0 --version
+grep -qE '^penumbra [0-9]+\.[0-9]+\.[0-9]+$' out || fail "version: $(cat out)"
+run 2
+grep -q 'penumbra render' err || fail "no overview without arguments"
+
+# Each technique has help and stands in the list; verbose shows its parameters.
+run 0 list techniques
+awk '{print $1}' out >techniques
+grep -qx pcss techniques || fail "pcss is not listed"
+while read -r technique; do
+  run 0 help "$technique"
+  grep -q "^$technique: " out || fail "help $technique"
+done <techniques
+run 0 list techniques --verbose
+grep -qE '^  samples=1\.\.64 +default 8' out || fail "parameter tables: $(cat out)"
+run 0 list scenes
+[ "$(awk '{print $1}' out | sort | tr '\n' ' ')" = "balls boxes copies cylinder fence leaves room silhouette silhouette-standing square terrain " ] ||
+  fail "scenes: $(cat out)"
+run 0 list studies
+run 0 info
+grep -q 'devices (--device N)' out || fail "info: $(cat out)"
+
+# --name=V, --name V, -oV, V that starts with -, and the same picture each time.
+run 0 render builtin:boxes $small -o a.exr --light-center=-0.5,3,0 --light-size 0.5
+run 0 render builtin:boxes $small --output=b.exr --light-center -0.5,3,0 --light-size=0.5,0.5
+run 0 render $small -oc.exr --light-center -5e-1,3,0. --light-size .5 -- builtin:boxes
+cmp a.exr b.exr || fail "= and space differ"
+cmp a.exr c.exr || fail "number forms differ"
+run 0 render builtin:boxes $small -o d.exr
+cmp -s a.exr d.exr && fail "--light-center changes nothing"
+
+# Default names; several techniques.
+run 0 render builtin:boxes --size 16x12 --map 8 --frames 1
+[ -s boxes-pcss.png ] || fail "default name: $(ls)"
+grep -q '^boxes-pcss.png  [0-9.]* ms a frame' out || fail "the path is not printed: $(cat out)"
+run 0 render builtin:copies=2 --size 16x12 --map 8 --frames 1 -t hard -t pcss:samples=2
+[ -s copies=2-hard.png ] && [ -s copies=2-pcss-samples=2.png ] || fail "names of several: $(ls)"
+
+# The scene block of a result is a set-up: the same bytes again, and further options win.
+run 0 render builtin:boxes $small -o one.exr --json one.json --light sun --light-size 4,2 --fov 30 --split --light-center 1,2,0.1 --fit casters
+run 0 render builtin:boxes --frames 1 -t hard -o two.exr --setup one.json
+cmp one.exr two.exr || fail "--setup does not bring the picture back"
+run 0 render builtin:boxes --frames 1 -t hard -o three.exr --setup one.json --fov 40
+cmp -s one.exr three.exr && fail "an option does not override --setup"
+run 0 render builtin:boxes $small -o x.png --json -
+grep -q '"schema":' out && ! grep -q 'ms a frame' out || fail "--json -: $(head -3 out)"
+# What the contract alone names is enough: no target, no up.
+printf '{"light":{"type":"rectangle","center":[0,3,0],"direction":[0,-1,0],"u":[1,0,0],"v":[0,0,-1],"size":[1,1]}}' >plain.json
+run 0 render builtin:boxes $small -o plain.exr --setup plain.json
+cmp plain.exr d.exr || fail "the contract's own light object means another light"
+
+# The same command twice writes the same bytes.
+run 0 render builtin:leaves $small -o l1.png
+run 0 render builtin:leaves $small -o l2.png
+cmp l1.png l2.png || fail "not deterministic"
+
+# Warnings, one line each, and a picture all the same.
+warned() {
+  local pattern=$1
+  shift
+  run 0 render $small -o w.png "$@"
+  grep -qE "^penumbra: warning: .*$pattern" err || fail "no warning '$pattern': $* :: $(cat err)"
+  [ -s w.png ] || fail "no picture: $*"
+  rm -f w.png
+}
+warned 'inside the model' builtin:boxes --light-center 0.02,0.8,0.01 --light-target 0.02,0,0.01
+warned 'lies behind the light' builtin:boxes --light-center 0,-1,0 --light-target 0,-2,0
+warned 'sees nothing of the scene' builtin:boxes --camera-target 0,99,0
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv nan 0 0\nf 1 2 3\nf 1 3 4\nf 1 1 2\nf 1 2 5\n' >some.obj
+warned 'some.obj: dropped 1 triangle with a coordinate that is not finite, 1 triangle without area' some.obj
+run 0 render builtin:room $small -o inside.png --camera-position -1.7,1,-0.6 --camera-target 0,1,0 # in the wardrobe
+run 0 render builtin:boxes $small -o down.png --camera-position 0,5,0 --camera-target 0,0,0        # along its own up
+
+# bench: a table, and JSON with a ratio to the first.
+run 0 bench builtin:square --size 32x24 --map 16 --frames 2 --lights 1,2 --json bench.json
+grep -qE '^hard +[0-9.]+ +1\.00 ' out || fail "bench table: $(cat out)"
+grep -q 'state saving' out && grep -q 'touches no pixel' out || fail "bench costs: $(cat out)"
+for key in '"ratio":' '"lights":' '"stages":' '"state_saving":' '"untouched_light":' '"scene":'; do
+  grep -q "$key" bench.json || fail "bench.json has no $key"
+done
+finish
