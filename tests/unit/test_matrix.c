@@ -46,9 +46,9 @@ static void test_inverse_times_itself(void **state) {
   }
 }
 
-/* diag(row) a diag(column) has the inverse diag(1/column) inverse(a) diag(1/row), exactly when the factors are powers of two. Row factors are
- * divided out before pivots are chosen, so they change no bit; column factors may change the choice, so there only the residual, column by
- * column in its own unit, is bounded. */
+/* diag(row) a diag(column) has the inverse diag(1/column) inverse(a) diag(1/row), exactly when the factors are powers of two. Other factors
+ * lead to other pivots and other rounding, so what is bounded is the residual of the inverse with the factors taken out again; scaling rows
+ * and columns to a largest entry of 1 changes the condition by less than its own square. */
 static void test_badly_scaled(void **state) {
   (void)state;
   uint64_t seed = 2;
@@ -64,7 +64,6 @@ static void test_badly_scaled(void **state) {
     assert_true(pn_matrix_invert(&scaled, &inverse));
     for (int k = 0; k < 16; k++) inverse.m[k] *= column[k % 4] * row[k / 4];
     pn_matrix product = pn_matrix_multiply(&inverse, &a);
-    /* A poorer choice of pivots makes them grow by at most the plain condition once more. */
     double bound = residual_bound(&a, &plain) * norm(&a) * norm(&plain);
     for (int k = 0; k < 16; k++) assert_true(fabs(product.m[k] - (k % 5 == 0)) <= bound);
   }

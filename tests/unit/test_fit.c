@@ -1,0 +1,470 @@
+/* Fitting: what the maps of a light cover. */
+#include "gl_context.h"
+#include "maps/fit.h"
+#include "vector.h"
+
+#include <float.h>
+#include <string.h>
+
+enum { BOXES = PN_GROUP_COUNT };
+
+/* Fitting looks at boxes only, so casters need no GL here. */
+static void no_draw(void *user, const pn_caster_pass *pass) { (void)user, (void)pass; }
+
+static pn_box box_at(vec centre, vec half) {
+  return (pn_box){{(float)(centre.x - half.x), (float)(centre.y - half.y), (float)(centre.z - half.z)},
+                  {(float)(centre.x + half.x), (float)(centre.y + half.y), (float)(centre.z + half.z)}};
+}
+
+static void put_box(pn_casters *c, int i, vec centre, vec half) {
+  c->callbacks[i].draw = no_draw;
+  c->callbacks[i].bounds = box_at(centre, half);
+}
+
+static vec box_corner(const pn_box *b, int i) {
+  return v3(i & 1 ? b->max[0] : b->min[0], i & 2 ? b->max[1] : b->min[1], i & 4 ? b->max[2] : b->min[2]);
+}
+
+/* A light at the origin that shines along z, u along x, v = u x z along -y. */
+static pn_frame frame_along_z(bool sun, double extent) {
+  static const float z[3] = {0, 0, 1}, u[3] = {1, 0, 0};
+  pn_frame f = {.extent = {extent, extent}, .sun = sun};
+  assert_true(pn_frame_axes(z, u, &f));
+  return f;
+}
+
+static pn_fit_request request_of(const pn_frame *f, int size) {
+  return (pn_fit_request){.frame = f, .width = size, .height = size};
+}
+
+static pn_fit_result fit(const pn_casters *c, const pn_fit_request *request) {
+  pn_fit_result out;
+  pn_fit_maps(c, PN_GROUPS_ALL, request, &out);
+  return out;
+}
+
+static vec map_of(const pn_frame *f, vec p) {
+  pn_matrix light = pn_light_from_scene(f);
+  double in[3] = {p.x, p.y, p.z}, q[3], m[3];
+  pn_matrix_point(&light, in, q);
+  pn_map_point(q, f->sun, m);
+  return v3(m[0], m[1], m[2]);
+}
+
+static void random_boxes(pn_casters *c, uint64_t *seed, vec middle, double spread, double least_z) {
+  memset(c, 0, sizeof *c);
+  int count = 1 + (int)random_in(seed, 0, 8);
+  for (int i = 0; i < count; i++) {
+    vec half = v3(random_in(seed, 0.01, 0.5), random_in(seed, 0.01, 0.5), random_in(seed, 0.01, 0.5));
+    vec at = add(middle, random_point(seed, spread));
+    at.z = fmax(at.z, least_z + half.z);
+    put_box(c, i, at, half);
+  }
+}
+
+/* ---- what is covered, and how tightly ---- */
+
+typedef struct { vec least, most; } extent3;
+
+static extent3 exact_extent(const pn_casters *c, const pn_frame *f, const double shear[2]) {
+  extent3 e = {{1e30, 1e30, 1e30}, {-1e30, -1e30, -1e30}};
+  for (int b = 0; b < BOXES; b++)
+    for (int i = 0; i < 8 && c->callbacks[b].draw; i++) {
+      vec m = map_of(f, box_corner(&c->callbacks[b].bounds, i));
+      m.x -= shear[0] * m.z;
+      m.y -= shear[1] * m.z;
+      e.least = v3(fmin(e.least.x, m.x), fmin(e.least.y, m.y), fmin(e.least.z, m.z));
+      e.most = v3(fmax(e.most.x, m.x), fmax(e.most.y, m.y), fmax(e.most.z, m.z));
+    }
+  return e;
+}
+
+/* Steps are a power of two of at most 2/64 of the extent, and each end moves by at most one of them: 4/64. A border texel on each side then
+ * makes it N / (N - 2). Distances may move by an eighth of their power of two and a little: w_near by 1/4 at most (7/16 below 8/16 is the
+ * next step of the smaller power: 1/8; rounding up never does more than 1/8), so 1/7 of w; twice that is allowed. */
+static void assert_tight(const pn_fit_result *r, const extent3 *e, int size) {
+  double least[2] = {e->least.x, e->least.y}, most[2] = {e->most.x, e->most.y};
+  for (int k = 0; k < 2; k++) {
+    double extent = most[k] - least[k], slack = 4.0 / 64 * extent + 1e-12;
+    assert_true(r->bounds[k] <= least[k] && r->bounds[2 + k] >= most[k]);
+    assert_true(r->bounds[2 + k] - r->bounds[k] <= extent + slack);
+    /* Not even the snapped bounds reach into the outermost texels. */
+    double texel = (r->tile[0][2 + k] - r->tile[0][k]) / size;
+    assert_true(fabs(r->tile[0][k] + texel - r->bounds[k]) < 1e-9 * extent + 1e-12);
+    assert_true(fabs(r->tile[0][2 + k] - texel - r->bounds[2 + k]) < 1e-9 * extent + 1e-12);
+  }
+}
+
+static void check_cover(bool sun, bool sheared) {
+  uint64_t seed = sun ? 2 : 1;
+  for (int round = 0; round < 2000; round++) {
+    static pn_casters c;
+    pn_frame f = frame_along_z(sun, 0.5);
+    pn_fit_request request = request_of(&f, 64);
+    for (int k = 0; k < 2; k++) request.shear[k] = sheared ? random_in(&seed, -0.5, 0.5) : 0;
+    random_boxes(&c, &seed, v3(0, 0, 5), 2, 2.5);
+    pn_fit_result r = fit(&c, &request);
+    extent3 e = exact_extent(&c, &f, request.shear);
+    assert_false(r.empty || r.clamped);
+    assert_int_equal(r.tiles, 1);
+    assert_tight(&r, &e, 64);
+    assert_true(r.w_far < e.least.z && e.most.z < r.w_near);
+    if (sun)
+      assert_true(r.w_near - r.w_far <= (e.most.z - e.least.z) * (1 + 8.0 / 64) + 1e-4);
+    else
+      assert_true(r.w_near <= e.most.z * (1 + 2.0 / 7) && r.w_far >= e.least.z * (1 - 2.0 / 8));
+  }
+}
+
+static void test_cover(void **state) {
+  (void)state;
+  for (int i = 0; i < 4; i++) check_cover(i & 1, i & 2);
+}
+
+/* Boxes of a turned mesh count by their turned corners, not by a box around them. */
+static void test_turned_instance(void **state) {
+  (void)state;
+  pn_box box = {{-1, -1, -0.01f}, {1, 1, 0.01f}};
+  pn_mesh_data mesh = {.id = 1, .boxes = &box, .box_count = 1};
+  double a = 0.7;
+  pn_instance_data instance = {.id = 2, .scene_from_object = {{cos(a), sin(a), 0, 0, -sin(a), cos(a), 0, 0, 0, 0, 1, 0, 0.3, 0, 4, 1}}};
+  pn_casters c = {.meshes = &mesh, .mesh_count = 1, .instances = &instance, .instance_count = 1};
+  pn_frame f = frame_along_z(false, 0.5);
+  pn_fit_request request = request_of(&f, 64);
+  pn_fit_result r = fit(&c, &request);
+  extent3 e = {{1e30, 1e30, 1e30}, {-1e30, -1e30, -1e30}};
+  for (int i = 0; i < 8; i++) {
+    vec k = box_corner(&box, i), p = v3(cos(a) * k.x - sin(a) * k.y + 0.3, sin(a) * k.x + cos(a) * k.y, k.z + 4);
+    vec m = map_of(&f, p);
+    e.least = v3(fmin(e.least.x, m.x), fmin(e.least.y, m.y), 0);
+    e.most = v3(fmax(e.most.x, m.x), fmax(e.most.y, m.y), 0);
+  }
+  assert_tight(&r, &e, 64);
+}
+
+/* ---- snapping ---- */
+
+static pn_fit_result fit_two(double x, double y, double z, bool sun) {
+  static pn_casters c;
+  memset(&c, 0, sizeof c);
+  put_box(&c, 0, v3(0, 0, 5), v3(1.7, 1.3, 0.5)); /* stays, and holds the bounds at three sides */
+  put_box(&c, 1, v3(x, y, z), v3(0.2, 0.2, 0.2));
+  pn_frame f = frame_along_z(sun, 0.5);
+  pn_fit_request request = request_of(&f, 100);
+  return fit(&c, &request);
+}
+
+static void test_moving_inside(void **state) {
+  (void)state;
+  uint64_t seed = 3;
+  for (int sun = 0; sun < 2; sun++) {
+    pn_fit_result still = fit_two(0, 0, 5, sun);
+    for (int i = 0; i < 2000; i++) {
+      pn_fit_result moved = fit_two(random_in(&seed, -1.2, 1.2), random_in(&seed, -0.8, 0.8), random_in(&seed, 4.75, 5.25), sun);
+      assert_memory_equal(&still, &moved, sizeof still);
+    }
+  }
+}
+
+/* Casters that fill any part of the snapped bounds which contains the first casters give the same bounds: what moves inside them, up to
+ * their very edge, changes nothing. */
+static void test_snapping_is_stable(void **state) {
+  (void)state;
+  uint64_t seed = 4;
+  for (int i = 0; i < 5000; i++) {
+    static pn_casters c;
+    memset(&c, 0, sizeof c);
+    pn_frame f = frame_along_z(true, 0.5);
+    pn_fit_request request = request_of(&f, 100);
+    vec centre = random_point(&seed, 3), half = v3(exp2(random_in(&seed, -4, 2)), exp2(random_in(&seed, -4, 2)), 1);
+    put_box(&c, 0, centre, half);
+    pn_fit_result first = fit(&c, &request);
+    /* A second box from a corner of the snapped bounds, a float's width inside, to somewhere in the first box. v is -y. */
+    double s = first.bounds[0] + 1e-6 * (1 + fabs(first.bounds[0])), t = first.bounds[3] - 1e-6 * (1 + fabs(first.bounds[3]));
+    vec corner = v3(s, -t, centre.z), size = mul(0.5, sub(centre, corner));
+    put_box(&c, 1, add(corner, size), v3(fabs(size.x), fabs(size.y), 0.5));
+    pn_fit_result second = fit(&c, &request);
+    assert_memory_equal(first.bounds, second.bounds, sizeof first.bounds);
+    assert_true(first.w_near == second.w_near && first.w_far == second.w_far);
+  }
+}
+
+/* ---- the light's plane ---- */
+
+static void test_crossing_and_behind(void **state) {
+  (void)state;
+  static pn_casters c;
+  pn_frame f = frame_along_z(false, 0.5);
+  pn_fit_request request = request_of(&f, 64);
+  memset(&c, 0, sizeof c);
+  put_box(&c, 0, v3(0, 0, -3), v3(1, 1, 1)); /* wholly behind */
+  assert_true(fit(&c, &request).empty);
+  put_box(&c, 1, v3(0.5, 0, 4), v3(0.5, 0.5, 0.5));
+  pn_fit_result alone = fit(&c, &request);
+  assert_false(alone.empty);
+  c.callbacks[0].draw = NULL;
+  pn_fit_result without = fit(&c, &request);
+  assert_memory_equal(&alone, &without, sizeof alone);
+  /* One that crosses the plane beside the light: what lies before the light is inside. */
+  put_box(&c, 0, v3(2, 0, 1), v3(0.25, 0.25, 3));
+  pn_fit_result crossing = fit(&c, &request);
+  assert_false(crossing.empty);
+  for (double z = 0.5; z <= 4; z += 0.25)
+    for (int i = 0; i < 4; i++) {
+      vec m = map_of(&f, v3(i & 1 ? 2.25 : 1.75, i & 2 ? 0.25 : -0.25, z));
+      assert_true(m.x >= crossing.bounds[0] && m.x <= crossing.bounds[2]);
+      assert_true(m.y >= crossing.bounds[1] && m.y <= crossing.bounds[3]);
+      assert_true(m.z > crossing.w_far && m.z < crossing.w_near);
+    }
+}
+
+static void test_near_and_range(void **state) {
+  (void)state;
+  static pn_casters c;
+  pn_frame f = frame_along_z(false, 0.5);
+  pn_fit_request request = request_of(&f, 64);
+  memset(&c, 0, sizeof c);
+  put_box(&c, 0, v3(0, 0, 2), v3(0.25, 0.25, 0.5));
+  put_box(&c, 1, v3(0, 0, 9), v3(3, 3, 0.5));
+  pn_fit_result both = fit(&c, &request);
+  request.range = 8; /* the second begins at 8.5 */
+  pn_fit_result near = fit(&c, &request);
+  assert_true(near.bounds[2] < both.bounds[2] && near.w_far > both.w_far);
+  request.range = 8.75; /* part of it lies within */
+  pn_fit_result reaching = fit(&c, &request);
+  assert_memory_equal(&reaching, &both, sizeof both);
+  request.range = 0;
+  request.near_distance = 2; /* w_near: nearer casters are taken to be there */
+  pn_fit_result clamped = fit(&c, &request);
+  assert_true(clamped.w_near > 0.5 && clamped.w_near <= 0.5 * (1 + 2.0 / 7));
+}
+
+/* ---- wide lights ---- */
+
+static void assert_tiles_cover(const pn_fit_result *r) {
+  double edges[2][2] = {{r->bounds[0], r->bounds[2]}, {r->bounds[1], r->bounds[3]}};
+  uint64_t seed = 5;
+  for (int i = 0; i < 20000; i++) {
+    double at[2];
+    for (int k = 0; k < 2; k++) /* over angles, so that every tile gets its share; and the very ends */
+      at[k] = i < 4 ? edges[k][i >> k & 1] : tan(random_in(&seed, atan(edges[k][0]), atan(edges[k][1])));
+    int found = 0;
+    for (int t = 0; t < r->tiles; t++) {
+      const double *b = r->tile[t];
+      found += at[0] >= b[0] && at[0] <= b[2] && at[1] >= b[1] && at[1] <= b[3];
+    }
+    assert_true(found >= 1);
+  }
+}
+
+static pn_fit_result fit_wall(double tangent, bool both_ways) {
+  static pn_casters c;
+  memset(&c, 0, sizeof c);
+  put_box(&c, 0, v3(0, 0, 5), v3(5 * tangent, both_ways ? 5 * tangent : 1, 0));
+  pn_frame f = frame_along_z(false, 0.5);
+  pn_fit_request request = request_of(&f, 64);
+  return fit(&c, &request);
+}
+
+static void test_tiles(void **state) {
+  (void)state;
+  const double degree = 0.017453292519943295;
+  for (double angle = 40; angle < 89; angle += 1) {
+    pn_fit_result r = fit_wall(tan(angle * degree), false);
+    double opening = (atan(r.bounds[2]) - atan(r.bounds[0])) / degree;
+    assert_int_equal(r.tiles, opening > 120 ? (int)ceil(opening / 60) : 1);
+    for (int t = 0; t < r.tiles && r.tiles > 1; t++) { /* 60 degrees at most, without the texel at each side */
+      double texel = (r.tile[t][2] - r.tile[t][0]) / 64;
+      assert_true((atan(r.tile[t][2] - texel) - atan(r.tile[t][0] + texel)) / degree < 60.001);
+    }
+    assert_tiles_cover(&r);
+    if (angle < 84) assert_false(r.clamped);
+    if (angle > 85) assert_true(r.clamped && r.bounds[2] == PN_TANGENT_MAX && r.bounds[0] == -PN_TANGENT_MAX);
+  }
+  pn_fit_result square = fit_wall(tan(80 * degree), true);
+  assert_int_equal(square.tiles, 9);
+  assert_tiles_cover(&square);
+}
+
+/* The warning says that casters are left out: it must not come when only the snapping reached over the limit. */
+static void test_clamped_means_lost(void **state) {
+  (void)state;
+  for (double part = 0.9; part < 1; part += 0.001) {
+    pn_fit_result r = fit_wall(part * PN_TANGENT_MAX, false);
+    assert_false(r.clamped);
+    assert_true(r.bounds[2] <= PN_TANGENT_MAX);
+  }
+}
+
+/* ---- what a visible region keeps ---- */
+
+static bool inside_box(const pn_region *g, vec m) {
+  return m.x >= g->least[0] && m.x <= g->most[0] && m.y >= g->least[1] && m.y <= g->most[1] && m.z >= g->least[2] &&
+         m.z <= g->most[2];
+}
+
+/* Points of a caster box, of the light and of the region, joined: whenever a caster's point lies between the light and a receiver of the
+ * region, the map must hold it. And boxes that no such line meets should not widen the map: the tight region says when. */
+static void check_visible(bool sun, uint64_t seed, bool sheared) {
+  static pn_casters c;
+  pn_frame f = frame_along_z(sun, 0.8);
+  int hits = 0;
+  for (int round = 0; round < 300; round++) {
+    random_boxes(&c, &seed, v3(0, 0, 4), 3, 1.5);
+    pn_region region = pn_region_empty();
+    vec corner = v3(random_in(&seed, -4, 4), random_in(&seed, -4, 4), random_in(&seed, 3, 8)), some[8];
+    for (int i = 0; i < 8; i++) { /* receivers, and the region they make */
+      some[i] = add(corner, random_point(&seed, 0.5));
+      vec m = map_of(&f, some[i]);
+      for (int k = 0; k < 3; k++) {
+        double value = k == 0 ? m.x : k == 1 ? m.y : m.z;
+        region.least[k] = fmin(region.least[k], value);
+        region.most[k] = fmax(region.most[k], value);
+      }
+    }
+    pn_fit_request request = request_of(&f, 64);
+    for (int k = 0; k < 2 && sheared; k++) request.shear[k] = random_in(&seed, -0.8, 0.8);
+    request.visible = &region;
+    pn_fit_result r = fit(&c, &request);
+    for (int i = 0; i < 2000; i++) {
+      const vec p = some[i % 8];
+      const pn_box *b = &c.callbacks[0].bounds;
+      vec q = v3(random_in(&seed, b->min[0], b->max[0]), random_in(&seed, b->min[1], b->max[1]),
+                 random_in(&seed, b->min[2], b->max[2]));
+      vec mq = map_of(&f, q), mp = map_of(&f, p);
+      if (!(mq.z > mp.z)) continue;
+      double x = (mq.x - mp.x) / (mq.z - mp.z), y = (mq.y - mp.y) / (mq.z - mp.z);
+      bool wanted = sheared ? fabs(x - request.shear[0]) < 1e-2 && fabs(y - request.shear[1]) < 1e-2 : fabs(x) <= 0.8 && fabs(y) <= 0.8;
+      if (!wanted) continue;
+      hits++;
+      assert_false(r.empty);
+      double s = mq.x - request.shear[0] * mq.z, t = mq.y - request.shear[1] * mq.z;
+      assert_true(s >= r.bounds[0] && s <= r.bounds[2] && t >= r.bounds[1] && t <= r.bounds[3]);
+      assert_true(mq.z > r.w_far && mq.z < r.w_near);
+    }
+    assert_true(inside_box(&region, map_of(&f, some[0])));
+  }
+  assert_true(sheared || hits > 1000);
+}
+
+static void test_visible_keeps(void **state) {
+  (void)state;
+  check_visible(false, 6, false);
+  check_visible(true, 7, false);
+  check_visible(false, 8, true);
+  check_visible(true, 9, true);
+}
+
+static void test_visible_cuts(void **state) {
+  (void)state;
+  static pn_casters c;
+  pn_frame f = frame_along_z(false, 0.5);
+  pn_region region = {{-0.05, -0.05, 0.1}, {0.05, 0.05, 0.125}}; /* 8 to 10 before the light */
+  pn_fit_request request = request_of(&f, 64);
+  request.visible = &region;
+  memset(&c, 0, sizeof c);
+  put_box(&c, 0, v3(0, 0, 4), v3(0.1, 0.1, 0.1));
+  pn_fit_result alone = fit(&c, &request);
+  assert_false(alone.empty);
+  put_box(&c, 1, v3(0, 0, 20), v3(5, 5, 1));  /* beyond every receiver */
+  put_box(&c, 2, v3(3, 0, 4), v3(1, 0.5, 0.5)); /* aside: s from 2 / 4.5, but the window at w = 1 / 3.5 ends at 0.05 + 0.5 (0.286 - 0.1) = 0.143 */
+  pn_fit_result with = fit(&c, &request);
+  assert_memory_equal(alone.bounds, with.bounds, sizeof alone.bounds);
+  c.callbacks[0].draw = NULL;
+  assert_true(fit(&c, &request).empty);
+}
+
+/* A camera's frustum: every point in it lies in the region that is made of it. */
+static void test_frustum(void **state) {
+  (void)state;
+  uint64_t seed = 10;
+  for (int round = 0; round < 400; round++) {
+    bool sun = round & 1, infinite = round & 2, zero_to_one = round & 4;
+    pn_frame f = frame_along_z(sun, 0.5);
+    double near = 0.5, far = 6, low = zero_to_one ? 0 : -1;
+    double b = (1 - low) / (infinite ? -1 / near : 1 / far - 1 / near), a = infinite ? 1 : 1 - b / far;
+    pn_matrix projection = {{1.2, 0, 0, 0, 0, 1.5, 0, 0, 0.1, -0.2, -a, -1, 0, 0, b, 0}};
+    vec back = random_direction(&seed), right = unit(cross(random_direction(&seed), back)), up = cross(back, right);
+    vec eye = random_point(&seed, 4);
+    pn_matrix camera = {{right.x, up.x, back.x, 0, right.y, up.y, back.y, 0, right.z, up.z, back.z, 0, -dot(right, eye), -dot(up, eye), -dot(back, eye), 1}};
+    pn_matrix clip = pn_matrix_multiply(&projection, &camera), inverse;
+    assert_true(pn_matrix_invert(&clip, &inverse));
+    pn_region region = pn_region_empty();
+    pn_region_add_frustum(&region, &f, &inverse, low);
+    for (int i = 0; i < 200; i++) {
+      double at[4] = {random_in(&seed, -1, 1), random_in(&seed, -1, 1), random_in(&seed, low, infinite ? 0.999 : 1), 1}, h[4];
+      pn_matrix_apply(&inverse, at, h);
+      vec p = v3(h[0] / h[3], h[1] / h[3], h[2] / h[3]);
+      if (!sun && p.z <= 1e-6) continue; /* v = -y, so z is the light's z */
+      vec m = map_of(&f, p);
+      for (int k = 0; k < 3; k++) {
+        double value = k == 0 ? m.x : k == 1 ? m.y : m.z, slack = 1e-9 * (1 + fabs(value));
+        if (!(value >= region.least[k] - slack && value <= region.most[k] + slack))
+          fail_msg("round %d: coordinate %d is %g, not in %g .. %g", round, k, value, region.least[k], region.most[k]);
+      }
+    }
+  }
+}
+
+/* ---- oddities ---- */
+
+static void test_flat(void **state) {
+  (void)state;
+  static pn_casters c;
+  const vec halves[] = {{0, 1, 1}, {1, 0, 1}, {0, 0, 1}, {0, 0, 0}, {1, 1, 0}};
+  for (int sun = 0; sun < 2; sun++)
+    for (int i = 0; i < 5; i++) {
+      pn_frame f = frame_along_z(sun, 0.5);
+      pn_fit_request request = request_of(&f, 64);
+      memset(&c, 0, sizeof c);
+      put_box(&c, 0, v3(0, 0, 5), halves[i]);
+      pn_fit_result r = fit(&c, &request);
+      double none[2] = {0, 0};
+      extent3 e = exact_extent(&c, &f, none);
+      assert_false(r.empty);
+      assert_true(r.bounds[0] < r.bounds[2] && r.bounds[1] < r.bounds[3]);
+      assert_true(r.bounds[0] <= e.least.x && r.bounds[2] >= e.most.x && r.bounds[1] <= e.least.y && r.bounds[3] >= e.most.y);
+      assert_true(r.w_far < e.least.z && e.most.z < r.w_near);
+    }
+  memset(&c, 0, sizeof c);
+  pn_frame f = frame_along_z(false, 0.5);
+  pn_fit_request request = request_of(&f, 64);
+  assert_true(fit(&c, &request).empty);
+  put_box(&c, 3, v3(0, 0, 5), v3(1, 1, 1));
+  pn_fit_result r;
+  pn_fit_maps(&c, ~8u, &request, &r); /* groups */
+  assert_true(r.empty);
+}
+
+static void test_given(void **state) {
+  (void)state;
+  static pn_casters c;
+  memset(&c, 0, sizeof c);
+  put_box(&c, 0, v3(0, 0, 3), v3(2, 2, 0.5));
+  pn_frame f = frame_along_z(false, 0.5);
+  pn_fit_request request = request_of(&f, 64);
+  const float given[6] = {-0.3f, -0.7f, 4, 1.1f, 0.9f, 5};
+  request.given = given;
+  pn_fit_result r = fit(&c, &request);
+  /* t = -y / z; the box at its nearer side */
+  const double want[4] = {-0.3f / 4.0, -0.9f / 4.0, 1.1f / 4.0, 0.7f / 4.0};
+  for (int k = 0; k < 4; k++) {
+    assert_true(fabs(r.bounds[k] - want[k]) < 1e-12);
+    assert_true(r.tile[0][k] == r.bounds[k]); /* no border */
+  }
+  assert_int_equal(r.tiles, 1);
+  assert_true(r.w_near > 1 / 2.5 && r.w_far < 1 / 3.5); /* depth is the casters' */
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_cover),         cmocka_unit_test(test_turned_instance),
+      cmocka_unit_test(test_moving_inside), cmocka_unit_test(test_snapping_is_stable),
+      cmocka_unit_test(test_crossing_and_behind), cmocka_unit_test(test_near_and_range),
+      cmocka_unit_test(test_tiles),         cmocka_unit_test(test_clamped_means_lost),
+      cmocka_unit_test(test_visible_keeps), cmocka_unit_test(test_visible_cuts),
+      cmocka_unit_test(test_frustum),       cmocka_unit_test(test_flat),
+      cmocka_unit_test(test_given),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
