@@ -123,13 +123,16 @@ static void fit_given(fitting *f) {
 
 /* ---- snapping ---- */
 
-/* The step for an extent: a power of two, so that steps of neighbouring extents share their grid. */
-static double snap_step(double extent) { return exp2(ceil(log2(extent / snap_steps))); }
+/* The step for a range: a power of two, so that steps of neighbouring extents share their grid; chosen by the extent after snapping, so that
+ * whatever fills the snapped bounds keeps them. */
+static double snap_step(double low, double high) {
+  double step = exp2(ceil(log2((high - low) / snap_steps)));
+  return ceil(high / step) - floor(low / step) > snap_steps ? 2 * step : step;
+}
 
 static void snap_range(double *low, double *high) {
-  double extent = *high - *low;
-  if (!(extent > 0)) return;
-  double step = snap_step(extent);
+  if (!(*high > *low)) return;
+  double step = snap_step(*low, *high);
   *low = floor(*low / step) * step;
   *high = ceil(*high / step) * step;
 }
@@ -145,7 +148,7 @@ static double snap_distance(double z, bool up) {
 static void snap_depth(const fitting *f, pn_fit_result *out) {
   double w_low = f->least[2], w_high = f->most[2];
   if (f->request->frame->sun) {
-    double extent = fmax(w_high - w_low, 1e-6 * (fabs(w_high) + fabs(w_low)) + 1e-30), step = snap_step(extent);
+    double extent = fmax(w_high - w_low, 1e-6 * (fabs(w_high) + fabs(w_low)) + 1e-30), step = snap_step(w_high - extent, w_high);
     out->w_near = (ceil(w_high / step) + 1) * step;
     out->w_far = (floor(w_low / step) - 1) * step;
   } else {
@@ -203,12 +206,15 @@ static void widen_flat(double *low, double *high, double other_extent) {
   *high = middle + 0.5 * least;
 }
 
-static void clamp_opening(const fitting *f, pn_fit_result *out) {
+/* Whether anything was cut off. */
+static bool clamp_opening(const fitting *f, pn_fit_result *out) {
+  bool cut = false;
   for (int i = 0; i < 4 && !f->request->frame->sun; i++) {
     double clamped = fmin(fmax(out->bounds[i], -PN_TANGENT_MAX), PN_TANGENT_MAX);
-    if (clamped != out->bounds[i]) out->clamped = true;
+    cut = cut || clamped != out->bounds[i];
     out->bounds[i] = clamped;
   }
+  return cut;
 }
 
 void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_request *request, pn_fit_result *out) {
@@ -228,12 +234,12 @@ void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_reques
     out->bounds[i] = f.least[i];
     out->bounds[i + 2] = f.most[i];
   }
-  clamp_opening(&f, out);
+  out->clamped = clamp_opening(&f, out);
   for (int i = 0; i < 2; i++) {
     widen_flat(&out->bounds[i], &out->bounds[i + 2], f.most[1 - i] - f.least[1 - i]);
     if (!request->given) snap_range(&out->bounds[i], &out->bounds[i + 2]);
   }
-  clamp_opening(&f, out);
+  clamp_opening(&f, out); /* what snapping put beyond the limit is empty */
   snap_depth(&f, out);
   make_tiles(request, out);
 }
@@ -251,7 +257,8 @@ static void region_add(pn_region *region, const double m[3]) {
   }
 }
 
-/* Corners stay homogeneous, so that those of an infinite frustum need no case of their own. */
+/* Corners stay homogeneous, so that those of an infinite frustum need no case of their own: h[3] is 0 there, or rounding of either sign, and
+ * positive everywhere else before the camera. */
 void pn_region_add_frustum(pn_region *region, const pn_frame *frame, const pn_matrix *scene_from_clip, double depth_near) {
   pn_matrix light_from_scene = pn_light_from_scene(frame);
   pn_matrix light_from_clip = pn_matrix_multiply(&light_from_scene, scene_from_clip);
@@ -259,8 +266,6 @@ void pn_region_add_frustum(pn_region *region, const pn_frame *frame, const pn_ma
   for (int i = 0; i < 8; i++) {
     double clip[4] = {i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : depth_near, 1}, h[4];
     pn_matrix_apply(&light_from_clip, clip, h);
-    if (h[3] < 0)
-      for (int c = 0; c < 4; c++) h[c] = -h[c];
     double divisor = frame->sun ? h[3] : h[2];
     if (!(divisor > 1e-9 * (fabs(h[0]) + fabs(h[1]) + fabs(h[2])))) {
       behind = true; /* behind the light, or at infinity under a sun: no bound from this corner */
