@@ -31,7 +31,8 @@ static void silent(exr_const_context_t context, exr_result_t code, const char *t
   (void)text;
 }
 
-static exr_result_t write_header(exr_context_t context, int width, int height, const struct exr_plane *planes, int count) {
+static exr_result_t write_header(exr_context_t context, int width, int height, const struct exr_plane *planes,
+                                 int count) {
   int part = 0;
   exr_result_t r = exr_add_part(context, "penumbra", EXR_STORAGE_SCANLINE, &part);
   if (!r) r = exr_initialize_required_attr_simple(context, part, width, height, EXR_COMPRESSION_ZIP);
@@ -41,13 +42,15 @@ static exr_result_t write_header(exr_context_t context, int width, int height, c
 }
 
 /* Points the pipeline's channels at the rows of this chunk. */
-static void set_channels(exr_encode_pipeline_t *pipeline, int first_row, int width, const struct exr_plane *planes, int count) {
+static void set_channels(exr_encode_pipeline_t *pipeline, int first_row, int width, const struct exr_plane *planes,
+                         int count) {
   for (int c = 0; c < pipeline->channel_count; c++) {
     exr_coding_channel_info_t *channel = &pipeline->channels[c];
     for (int i = 0; i < count; i++) {
       if (strcmp(planes[i].name, channel->channel_name) != 0) continue;
       int stride = planes[i].stride;
-      channel->encode_from_ptr = (const uint8_t *)(planes[i].first + (size_t)first_row * (size_t)width * (size_t)stride);
+      channel->encode_from_ptr =
+          (const uint8_t *)(planes[i].first + (size_t)first_row * (size_t)width * (size_t)stride);
       channel->user_pixel_stride = stride * 4;
       channel->user_line_stride = stride * 4 * width;
       channel->user_bytes_per_element = 4;
@@ -56,7 +59,8 @@ static void set_channels(exr_encode_pipeline_t *pipeline, int first_row, int wid
   }
 }
 
-static exr_result_t write_rows(exr_context_t context, int width, int height, const struct exr_plane *planes, int count) {
+static exr_result_t write_rows(exr_context_t context, int width, int height, const struct exr_plane *planes,
+                               int count) {
   exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
   int32_t chunk_rows = 0;
   exr_result_t r = exr_get_scanlines_per_chunk(context, 0, &chunk_rows);
@@ -64,7 +68,8 @@ static exr_result_t write_rows(exr_context_t context, int width, int height, con
     exr_chunk_info_t chunk;
     r = exr_write_scanline_chunk_info(context, 0, row, &chunk);
     if (r) break;
-    r = row == 0 ? exr_encoding_initialize(context, 0, &chunk, &pipeline) : exr_encoding_update(context, 0, &chunk, &pipeline);
+    r = row == 0 ? exr_encoding_initialize(context, 0, &chunk, &pipeline)
+                 : exr_encoding_update(context, 0, &chunk, &pipeline);
     if (r) break;
     set_channels(&pipeline, row, width, planes, count);
     if (row == 0) r = exr_encoding_choose_default_routines(context, 0, &pipeline);

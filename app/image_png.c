@@ -35,7 +35,8 @@ int png_decode(const void *bytes, size_t size, int *width, int *height, uint8_t 
     snprintf(why, why_size, "%s", image.message);
     return -1;
   }
-  if (image.width > IMAGE_SIZE_MAX || image.height > IMAGE_SIZE_MAX || (uint64_t)image.width * image.height > 1u << 26) {
+  if (image.width > IMAGE_SIZE_MAX || image.height > IMAGE_SIZE_MAX ||
+      (uint64_t)image.width * image.height > 1u << 26) {
     snprintf(why, why_size, "%u x %u texels are too many", image.width, image.height);
     png_image_free(&image);
     return -1;

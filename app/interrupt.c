@@ -7,8 +7,8 @@
 #include "message.h"
 #include "progress.h"
 
-/* The handler ends the process itself: GL calls and model imports can run for many seconds without returning to a loop that
- * could look at a flag. It uses async-signal-safe calls only. */
+/* The handler ends the process itself: GL calls and model imports can run for many seconds without returning to a
+ * loop that could look at a flag. It uses async-signal-safe calls only. */
 enum { FILES_MAX = 16 };
 static const char *volatile files[FILES_MAX];
 static volatile sig_atomic_t child;
@@ -50,6 +50,4 @@ void interrupt_forget_file(const char *path) {
     if (files[i] == path) files[i] = NULL;
 }
 
-void interrupt_watch_child(pid_t pid) {
-  child = (sig_atomic_t)pid;
-}
+void interrupt_watch_child(pid_t pid) { child = (sig_atomic_t)pid; }

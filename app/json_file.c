@@ -34,7 +34,8 @@ void add_technique(cJSON *result, const char *spec) {
   enum { PARAMETERS_MAX = 64 };
   const pn_technique *technique = NULL;
   double values[PARAMETERS_MAX];
-  if (pn_technique_parse(spec, &technique, NULL, NULL, 0) != PN_OK || technique->parameter_count > PARAMETERS_MAX) return;
+  if (pn_technique_parse(spec, &technique, NULL, NULL, 0) != PN_OK || technique->parameter_count > PARAMETERS_MAX)
+    return;
   pn_technique_parse(spec, NULL, values, NULL, 0);
   cJSON_AddStringToObject(result, "technique", technique->name);
   cJSON_AddStringToObject(result, "label", spec);

@@ -10,12 +10,15 @@
 const struct command_row commands[] = {
     {"render", COMMAND_RENDER, command_render, 1, 1, "SCENE [options]", "one picture of SCENE under one technique"},
     {"compare", COMMAND_COMPARE, command_compare, 1, 1, "SCENE [options]", "several techniques against the reference"},
-    {"study", COMMAND_STUDY, command_missing, 1, 1000, "NAME... | all", "the papers' experiments, as CSV, plots and a report"},
+    {"study", COMMAND_STUDY, command_missing, 1, 1000, "NAME... | all",
+     "the papers' experiments, as CSV, plots and a report"},
     {"bench", COMMAND_BENCH, command_bench, 0, 1, "[SCENE] [options]", "stage times"},
     {"view", COMMAND_VIEW, command_missing, 0, 1, "[SCENE] [options]", "interactive window"},
-    {"list", COMMAND_LIST, command_list, 0, 1, "[techniques|scenes|studies]", "what there is to choose from; --verbose: with parameters"},
+    {"list", COMMAND_LIST, command_list, 0, 1, "[techniques|scenes|studies]",
+     "what there is to choose from; --verbose: with parameters"},
     {"info", COMMAND_INFO, command_info, 0, 0, "", "GL devices, limits, which accelerations are in use"},
-    {"help", COMMAND_HELP, command_help, 0, 1, "[COMMAND|TECHNIQUE]", "this, a command's options, a technique's parameters"},
+    {"help", COMMAND_HELP, command_help, 0, 1, "[COMMAND|TECHNIQUE]",
+     "this, a command's options, a technique's parameters"},
 };
 const int command_count = sizeof commands / sizeof *commands;
 

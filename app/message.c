@@ -8,9 +8,7 @@
 
 static int verbose;
 
-void message_set_verbose(int on) {
-  verbose = on;
-}
+void message_set_verbose(int on) { verbose = on; }
 
 /* Prints one line whole, in one write, so that lines of a child process never interleave. */
 static void say(const char *kind, const char *format, va_list arguments) {
@@ -39,9 +37,7 @@ int work_error(const char *format, ...) {
   return STATUS_FAILED;
 }
 
-int memory_error(void) {
-  return work_error("out of memory");
-}
+int memory_error(void) { return work_error("out of memory"); }
 
 void warning(const char *format, ...) {
   va_list arguments;

@@ -11,8 +11,8 @@
 /* Exit statuses, and what functions that can fail return: whoever meets the problem has already said so. */
 enum status {
   STATUS_OK = 0,
-  STATUS_FAILED = 1,      /* the work failed: no GL device, out of memory, I/O */
-  STATUS_INPUT = 2,       /* the command line or an input file is wrong */
+  STATUS_FAILED = 1, /* the work failed: no GL device, out of memory, I/O */
+  STATUS_INPUT = 2,  /* the command line or an input file is wrong */
   STATUS_INTERRUPTED = 130
 };
 

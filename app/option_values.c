@@ -8,7 +8,8 @@
 
 #include "message.h"
 
-/* One number in plain decimal notation; strtod alone would also take "nan", "inf" and hexadecimal. NULL: there is none. */
+/* One number in plain decimal notation; strtod alone would also take "nan", "inf" and hexadecimal. NULL: there is
+ * none. */
 static const char *read_number(const char *text, double *out) {
   if (!*text || text[strspn(text, "+-.0123456789eE")] == 'x' || !strchr("+-.0123456789", *text)) return NULL;
   char *end;
@@ -50,7 +51,8 @@ int read_size(const char *name, const char *text, int least, int most, int squar
     ok = ok && !*end2;
   }
   const char *shape = square ? "N or NxM" : "WxH";
-  if (!ok) return input_error("%s: '%s' is not %s, such as %s", name, text, shape, square ? "512 or 512x256" : "1024x768");
+  if (!ok)
+    return input_error("%s: '%s' is not %s, such as %s", name, text, shape, square ? "512 or 512x256" : "1024x768");
   if (a < least || a > most || b < least || b > most)
     return input_error("%s: '%s' is out of range: each must be from %d to %d", name, text, least, most);
   out[0] = (int)a;

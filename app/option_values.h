@@ -1,4 +1,5 @@
-/* option_values.h: reading one option's value. Each reader takes the option's name for its message, and answers with the exit status. */
+/* option_values.h: reading one option's value. Each reader takes the option's name for its message, and answers
+ * with the exit status. */
 #ifndef PENUMBRA_APP_OPTION_VALUES_H
 #define PENUMBRA_APP_OPTION_VALUES_H
 

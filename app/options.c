@@ -27,7 +27,8 @@ struct option_row {
   const char *help;
 };
 
-/* The nearest technique, or the nearest parameter of a technique, to what a spec names wrongly; "" where nothing is near. */
+/* The nearest technique, or the nearest parameter of a technique, to what a spec names wrongly; "" where nothing is
+ * near. */
 static void suggest(const char *spec, char *hint, size_t hint_size) {
   enum { NAMES_MAX = 128 };
   const char *names[NAMES_MAX], *at = spec + strcspn(spec, ":");
@@ -39,7 +40,8 @@ static void suggest(const char *spec, char *hint, size_t hint_size) {
     for (int i = 0; i < pn_technique_count() && i < NAMES_MAX; i++) names[count++] = pn_technique_at(i)->name;
     if (nearest_name(typed, names, count, hint, hint_size)) return;
   }
-  for (int i = 0; technique && i < technique->parameter_count && i < NAMES_MAX; i++) names[count++] = technique->parameters[i].name;
+  for (int i = 0; technique && i < technique->parameter_count && i < NAMES_MAX; i++)
+    names[count++] = technique->parameters[i].name;
   for (const char *key = at; technique && *key; key += strcspn(key, ",")) {
     key++;
     snprintf(typed, sizeof typed, "%.*s", (int)strcspn(key, "=,"), key);
@@ -81,9 +83,9 @@ static int read_light(struct options *o, const char *name, const char *value) {
   return status;
 }
 
-#define POINT_READER(function, field)                                            \
+#define POINT_READER(function, field) \
   static int function(struct options *o, const char *name, const char *value) { \
-    return read_numbers(name, value, 3, "X,Y,Z", o->setup.field);               \
+    return read_numbers(name, value, 3, "X,Y,Z", o->setup.field); \
   }
 POINT_READER(read_light_center, light.center)
 POINT_READER(read_light_target, light.target)
@@ -169,7 +171,8 @@ static int read_frames(struct options *o, const char *name, const char *value) {
 
 static int read_lights(struct options *o, const char *name, const char *value) {
   char copy[64];
-  if (snprintf(copy, sizeof copy, "%s", value) >= (int)sizeof copy) return input_error("%s: '%s' is too long", name, value);
+  if (snprintf(copy, sizeof copy, "%s", value) >= (int)sizeof copy)
+    return input_error("%s: '%s' is too long", name, value);
   o->light_count_count = 0;
   char *rest = copy;
   for (char *comma; rest; rest = comma ? comma + 1 : NULL) {
@@ -182,11 +185,11 @@ static int read_lights(struct options *o, const char *name, const char *value) {
   return STATUS_OK;
 }
 
-#define TEXT_READER(function, field)                                             \
+#define TEXT_READER(function, field) \
   static int function(struct options *o, const char *name, const char *value) { \
-    if (!*value) return input_error("%s: needs a name", name);                   \
-    o->field = value;                                                            \
-    return STATUS_OK;                                                            \
+    if (!*value) return input_error("%s: needs a name", name); \
+    o->field = value; \
+    return STATUS_OK; \
   }
 TEXT_READER(read_setup, setup_file)
 TEXT_READER(read_json, json)
@@ -201,35 +204,52 @@ static int read_flag(struct options *o, const char *name, const char *value) {
 }
 
 static const struct option_row table[OPTION_COUNT] = {
-    [OPTION_TECHNIQUE] = {"technique", 't', "NAME[:key=value,...]", DRAWING, read_technique, "technique and its parameters; repeatable"},
-    [OPTION_OUTPUT] = {"output", 'o', "FILE", FILES & ~COMMAND_BENCH, read_output, "picture to write; .png or .exr by its ending"},
+    [OPTION_TECHNIQUE] = {"technique", 't', "NAME[:key=value,...]", DRAWING, read_technique,
+                          "technique and its parameters; repeatable"},
+    [OPTION_OUTPUT] = {"output", 'o', "FILE", FILES & ~COMMAND_BENCH, read_output,
+                       "picture to write; .png or .exr by its ending"},
     [OPTION_SIZE] = {"size", 0, "WxH", DRAWING, read_picture_size, "picture size in pixels, default 1024x768"},
     [OPTION_MAP] = {"map", 0, "N[xM]", DRAWING, read_map, "depth-map resolution, 1 to 8192, default 512"},
-    [OPTION_LIGHT] = {"light", 0, "rectangle|sun", DRAWING, read_light, "kind of light; a sun shines along centre to target"},
-    [OPTION_LIGHT_CENTER] = {"light-center", 0, "X,Y,Z", DRAWING, read_light_center, "default 3 H above the model's lowest point"},
+    [OPTION_LIGHT] = {"light", 0, "rectangle|sun", DRAWING, read_light,
+                      "kind of light; a sun shines along centre to target"},
+    [OPTION_LIGHT_CENTER] = {"light-center", 0, "X,Y,Z", DRAWING, read_light_center,
+                             "default 3 H above the model's lowest point"},
     [OPTION_LIGHT_TARGET] = {"light-target", 0, "X,Y,Z", DRAWING, read_light_target, "default B, the model's foot"},
-    [OPTION_LIGHT_UP] = {"light-up", 0, "X,Y,Z", DRAWING, read_light_up, "which way the light's v axis leans, default 0,0,-1"},
-    [OPTION_LIGHT_SIZE] = {"light-size", 0, "W[,H]", DRAWING, read_light_size, "full widths in scene units; of a sun, full angles in degrees"},
-    [OPTION_LIGHT_TEXTURE] = {"light-texture", 0, "FILE", DRAWING, read_light_texture, "radiance over the light (not available in this version)"},
-    [OPTION_CAMERA_POSITION] = {"camera-position", 0, "X,Y,Z", DRAWING, read_camera_position, "default B + (0, 1.8 H, 2.6 H)"},
+    [OPTION_LIGHT_UP] = {"light-up", 0, "X,Y,Z", DRAWING, read_light_up,
+                         "which way the light's v axis leans, default 0,0,-1"},
+    [OPTION_LIGHT_SIZE] = {"light-size", 0, "W[,H]", DRAWING, read_light_size,
+                           "full widths in scene units; of a sun, full angles in degrees"},
+    [OPTION_LIGHT_TEXTURE] = {"light-texture", 0, "FILE", DRAWING, read_light_texture,
+                              "radiance over the light (not available in this version)"},
+    [OPTION_CAMERA_POSITION] = {"camera-position", 0, "X,Y,Z", DRAWING, read_camera_position,
+                                "default B + (0, 1.8 H, 2.6 H)"},
     [OPTION_CAMERA_TARGET] = {"camera-target", 0, "X,Y,Z", DRAWING, read_camera_target, "default B + (0, 0.38 H, 0)"},
     [OPTION_CAMERA_UP] = {"camera-up", 0, "X,Y,Z", DRAWING, read_camera_up, "default 0,1,0"},
     [OPTION_FOV] = {"fov", 0, "DEGREES", DRAWING, read_fov, "vertical field of view, default 48.5"},
-    [OPTION_GROUND] = {"ground", 0, "on|off", DRAWING, read_ground, "a plane below the model that only receives; default on for model files"},
+    [OPTION_GROUND] = {"ground", 0, "on|off", DRAWING, read_ground,
+                       "a plane below the model that only receives; default on for model files"},
     [OPTION_UP] = {"up", 0, "y|z", DRAWING, read_up, "which axis of the file is up, default y"},
-    [OPTION_FIT] = {"fit", 0, "visible|casters|X0,Y0,Z0,X1,Y1,Z1", DRAWING, read_fit, "what the depth map is fitted to, default visible"},
-    [OPTION_VISIBILITY_SCALE] = {"visibility-scale", 0, "1|2|4", DRAWING, read_visibility_scale, "compute visibility at full, half, quarter resolution"},
+    [OPTION_FIT] = {"fit", 0, "visible|casters|X0,Y0,Z0,X1,Y1,Z1", DRAWING, read_fit,
+                    "what the depth map is fitted to, default visible"},
+    [OPTION_VISIBILITY_SCALE] = {"visibility-scale", 0, "1|2|4", DRAWING, read_visibility_scale,
+                                 "compute visibility at full, half, quarter resolution"},
     [OPTION_SPLIT] = {"split", 0, NULL, DRAWING, read_flag, "the model only casts, the ground only receives"},
-    [OPTION_DEVICE] = {"device", 0, "auto|software|N", DRAWING | COMMAND_INFO, read_device, "which GL device; penumbra info numbers them"},
-    [OPTION_SETUP] = {"setup", 0, "FILE", DRAWING, read_setup, "scene block of an earlier JSON; further options override it"},
-    [OPTION_REFERENCE_SAMPLES] = {"reference-samples", 0, "N", COMMAND_COMPARE | COMMAND_STUDY | COMMAND_VIEW, read_reference_samples,
-                                  "rays per pixel, a square number up to 65536, default 1024"},
+    [OPTION_DEVICE] = {"device", 0, "auto|software|N", DRAWING | COMMAND_INFO, read_device,
+                       "which GL device; penumbra info numbers them"},
+    [OPTION_SETUP] = {"setup", 0, "FILE", DRAWING, read_setup,
+                      "scene block of an earlier JSON; further options override it"},
+    [OPTION_REFERENCE_SAMPLES] =
+        {"reference-samples", 0, "N", DRAWING, read_reference_samples,
+         "rays per pixel where a reference is traced, a square number up to 65536, default 1024"},
     [OPTION_JSON] = {"json", 0, "FILE", FILES, read_json, "machine-readable result; - is standard output"},
-    [OPTION_SAVE_DIR] = {"save-dir", 0, "DIR", COMMAND_COMPARE | COMMAND_STUDY, read_save_dir, "raw buffers as EXR files"},
+    [OPTION_SAVE_DIR] = {"save-dir", 0, "DIR", COMMAND_RENDER | COMMAND_COMPARE | COMMAND_STUDY, read_save_dir,
+                         "raw buffers as EXR files"},
     [OPTION_HTML] = {"html", 0, "FILE", COMMAND_COMPARE, read_html, "one self-contained page"},
-    [OPTION_NO_CACHE] = {"no-cache", 0, NULL, COMMAND_COMPARE | COMMAND_STUDY, read_flag, "trace the reference again"},
-    [OPTION_FRAMES] = {"frames", 0, "N", DRAWING & ~COMMAND_VIEW, read_frames, "at most N timed frames, default 20, and at most 3 s a technique"},
-    [OPTION_LIGHTS] = {"lights", 0, "N[,N...]", COMMAND_BENCH, read_lights, "measure with N lights around the scene's own, default 1"},
+    [OPTION_NO_CACHE] = {"no-cache", 0, NULL, DRAWING, read_flag, "trace the reference again"},
+    [OPTION_FRAMES] = {"frames", 0, "N", DRAWING & ~COMMAND_VIEW, read_frames,
+                       "at most N timed frames, default 20, and at most 3 s a technique"},
+    [OPTION_LIGHTS] = {"lights", 0, "N[,N...]", COMMAND_BENCH, read_lights,
+                       "measure with N lights around the scene's own, default 1"},
     [OPTION_QUIET] = {"quiet", 0, NULL, EVERY, read_flag, "no progress bars"},
     [OPTION_VERBOSE] = {"verbose", 0, NULL, EVERY, read_flag, "say more"},
     [OPTION_HELP] = {"help", 'h', NULL, EVERY, read_flag, "show this and exit"},
@@ -342,7 +362,8 @@ void options_print(FILE *file, enum command command) {
     if (!(row->commands & command)) continue;
     char left[80];
     int n = row->letter ? snprintf(left, sizeof left, "-%c, ", row->letter) : snprintf(left, sizeof left, "    ");
-    snprintf(left + n, sizeof left - (size_t)n, "--%s%s%s", row->name, row->argument ? " " : "", row->argument ? row->argument : "");
+    snprintf(left + n, sizeof left - (size_t)n, "--%s%s%s", row->name, row->argument ? " " : "",
+             row->argument ? row->argument : "");
     if (strlen(left) > 36) fprintf(file, "  %s\n  %-36s  %s\n", left, "", row->help);
     else fprintf(file, "  %-36s  %s\n", left, row->help);
   }

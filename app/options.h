@@ -1,4 +1,5 @@
-/* options.h: the command line, by one table: every option's name, argument, help, the commands that take it, and how its value is read. */
+/* options.h: the command line, by one table: every option's name, argument, help, the commands that take it, and
+ * how its value is read. */
 #ifndef PENUMBRA_APP_OPTIONS_H
 #define PENUMBRA_APP_OPTIONS_H
 
@@ -55,8 +56,8 @@ enum option {
 
 enum { LIGHT_COUNTS_MAX = 8, LIGHTS_MAX = 64 };
 
-/* What was asked for. Strings point into argv. Values of options that were not given hold the contract's defaults, those of the set-up excepted:
- * they come from the scene, and options_apply lays the given ones over it. */
+/* What was asked for. Strings point into argv. Values of options that were not given hold the contract's defaults,
+ * those of the set-up excepted: they come from the scene, and options_apply lays the given ones over it. */
 struct options {
   unsigned char given[OPTION_COUNT];
   const char **techniques; /* specs, already checked with pn_technique_parse */
@@ -71,7 +72,8 @@ struct options {
   int light_counts[LIGHT_COUNTS_MAX], light_count_count; /* bench --lights */
 };
 
-/* Reads the arguments that follow the command's name. On failure one line was printed and the exit status is returned. Free the options in any case. */
+/* Reads the arguments that follow the command's name. On failure one line was printed and the exit status is
+ * returned. Free the options in any case. */
 int options_parse(struct options *options, enum command command, int argc, char **argv);
 void options_free(struct options *options);
 
@@ -81,8 +83,8 @@ void options_apply(const struct options *options, struct setup *setup);
 /* The options a command takes, one or more lines each. */
 void options_print(FILE *file, enum command command);
 
-/* The scene that the options describe, with --setup's scene block and all options applied and checked: scene_load, setup_apply_json,
- * options_apply, setup_finish. name NULL: options->positionals[0]. Exit status. */
+/* The scene that the options describe, with --setup's scene block and all options applied and checked: scene_load,
+ * setup_apply_json, options_apply, setup_finish. name NULL: options->positionals[0]. Exit status. */
 int options_scene(const struct options *options, const char *name, struct scene **out);
 
 #endif

@@ -10,9 +10,7 @@
 #include "interrupt.h"
 #include "message.h"
 
-static int is_standard_output(const char *path) {
-  return strcmp(path, "-") == 0;
-}
+static int is_standard_output(const char *path) { return strcmp(path, "-") == 0; }
 
 static void forget(struct output *output) {
   if (output->temporary) interrupt_forget_file(output->temporary);

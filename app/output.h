@@ -26,7 +26,8 @@ int output_fail(struct output *output, const char *reason);
 /* A whole file from memory. */
 int output_write_file(const char *path, const void *bytes, size_t size);
 
-/* Whether path could be written, before long work starts: its folder exists and is writable, and it is no folder itself. */
+/* Whether path could be written, before long work starts: its folder exists and is writable, and it is no folder
+ * itself. */
 int output_check(const char *path);
 
 #endif

@@ -14,9 +14,7 @@ static struct {
 } bar;
 static volatile sig_atomic_t visible;
 
-void progress_set_quiet(int quiet) {
-  bar.quiet = quiet;
-}
+void progress_set_quiet(int quiet) { bar.quiet = quiet; }
 
 void progress_begin(const char *what) {
   bar.active = !bar.quiet && isatty(STDERR_FILENO);
@@ -58,6 +56,4 @@ void progress_end(void) {
   bar.active = 0;
 }
 
-int progress_visible(void) {
-  return visible;
-}
+int progress_visible(void) { return visible; }

@@ -1,4 +1,5 @@
-/* penumbra bench: stage times of techniques, measured in turn in one run; what state saving costs, and a light that touches no pixel. */
+/* penumbra bench: stage times of techniques, measured in turn in one run; what state saving costs, and a light that
+ * touches no pixel. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,11 +44,12 @@ static int make_lights(struct bench *b, struct client *client, const char *spec,
 }
 
 static void print_table(const struct bench *b, const struct contestant *c, int lights) {
-  fprintf(b->people, "\n%d light%s\n%-28s %10s %8s %9s %9s %7s  %s\n", lights, lights == 1 ? "" : "s", "technique", "median ms", "ratio", "min", "max",
-          "frames", "stages, ms");
+  fprintf(b->people, "\n%d light%s\n%-28s %10s %8s %9s %9s %7s  %s\n", lights, lights == 1 ? "" : "s", "technique",
+          "median ms", "ratio", "min", "max", "frames", "stages, ms");
   for (int i = 0; i < b->spec_count; i++) {
     const struct timing *t = &c[i].timing;
-    fprintf(b->people, "%-28s %10.2f %8.2f %9.2f %9.2f %7d ", b->specs[i], t->median, t->median / c[0].timing.median, t->min, t->max, t->frames);
+    fprintf(b->people, "%-28s %10.2f %8.2f %9.2f %9.2f %7d ", b->specs[i], t->median, t->median / c[0].timing.median,
+            t->min, t->max, t->frames);
     for (int s = 0; s < t->stage_count; s++) fprintf(b->people, " %s %.2f", t->stages[s].name, t->stages[s].median);
     fputc('\n', b->people);
   }
@@ -74,7 +76,8 @@ static int bench_techniques(struct bench *b, int lights) {
   pn_light **all = calloc((size_t)b->spec_count * (size_t)lights + 1, sizeof *all);
   int status = c && all ? STATUS_OK : memory_error();
   for (int i = 0; i < b->spec_count && !status; i++) {
-    c[i] = (struct contestant){.client = b->host.client, .lights = all + (size_t)i * (size_t)lights, .light_count = lights};
+    c[i] = (struct contestant){
+        .client = b->host.client, .lights = all + (size_t)i * (size_t)lights, .light_count = lights};
     status = make_lights(b, b->host.client, b->specs[i], lights, c[i].lights);
   }
   if (!status) status = measure(c, b->spec_count, b->options->frames, 1);
@@ -88,7 +91,8 @@ static int bench_techniques(struct bench *b, int lights) {
   return status;
 }
 
-static void report(struct bench *b, const char *key, const char *text, const struct timing *a, const struct timing *other, double value) {
+static void report(struct bench *b, const char *key, const char *text, const struct timing *a,
+                   const struct timing *other, double value) {
   fprintf(b->people, "%s\n", text);
   if (!b->json) return;
   cJSON *object = cJSON_AddObjectToObject(b->json, key);
@@ -112,7 +116,8 @@ static int bench_state(struct bench *b) {
   if (!status) {
     double difference = c[0].timing.median - c[1].timing.median, share = difference / c[0].timing.median;
     char text[200];
-    snprintf(text, sizeof text, "\nstate saving: a %s frame takes %.3f ms saving state in each call, %.3f ms with one scope (%+.1f %%)",
+    snprintf(text, sizeof text,
+             "\nstate saving: a %s frame takes %.3f ms saving state in each call, %.3f ms with one scope (%+.1f %%)",
              cheapest_technique, c[0].timing.median, c[1].timing.median, 100 * share);
     report(b, "state_saving", text, &c[0].timing, &c[1].timing, share);
   }
@@ -139,8 +144,8 @@ static int bench_untouched(struct bench *b) {
   if (!status) {
     double share = c[1].timing.median / c[0].timing.median;
     char text[200];
-    snprintf(text, sizeof text, "a light that touches no pixel: %.3f ms, %.1f %% of a %s frame (%.3f ms)", c[1].timing.median, 100 * share,
-             cheapest_technique, c[0].timing.median);
+    snprintf(text, sizeof text, "a light that touches no pixel: %.3f ms, %.1f %% of a %s frame (%.3f ms)",
+             c[1].timing.median, 100 * share, cheapest_technique, c[0].timing.median);
     report(b, "untouched_light", text, &c[0].timing, &c[1].timing, share);
   }
   for (int i = 0; i < 2; i++) pn_light_destroy(&lights[i]);
@@ -163,8 +168,9 @@ static int choose_techniques(struct bench *b) {
 static void print_head(const struct bench *b) {
   const struct scene *scene = b->host.scene;
   const struct setup *setup = &scene->setup;
-  fprintf(b->people, "%s: %llu triangles, picture %dx%d, depth map %dx%d\n%s, OpenGL %s\n", scene->name, (unsigned long long)scene->triangle_count,
-          setup->size[0], setup->size[1], setup->map[0], setup->map[1], device_renderer(b->host.device), device_version(b->host.device));
+  fprintf(b->people, "%s: %llu triangles, picture %dx%d, depth map %dx%d\n%s, OpenGL %s\n", scene->name,
+          (unsigned long long)scene->triangle_count, setup->size[0], setup->size[1], setup->map[0], setup->map[1],
+          device_renderer(b->host.device), device_version(b->host.device));
 }
 
 static int run_bench(struct bench *b) {

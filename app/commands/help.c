@@ -25,8 +25,8 @@ void print_technique(FILE *file, const pn_technique *technique) {
     } else {
       snprintf(values, sizeof values, "%g..%g%s%s", p->least, p->most, *p->unit ? " " : "", p->unit);
     }
-    fprintf(file, "  %s=%s  default %s\n      %s%s%s%s\n", p->name, values, initial, p->help, *p->source ? " (" : "", p->source,
-            *p->source ? ")" : "");
+    fprintf(file, "  %s=%s  default %s\n      %s%s%s%s\n", p->name, values, initial, p->help, *p->source ? " (" : "",
+            p->source, *p->source ? ")" : "");
   }
 }
 
@@ -36,7 +36,8 @@ void print_help(FILE *file, const struct command_row *command) {
     options_print(file, command->bit);
     return;
   }
-  fprintf(file, "penumbra %s: real-time soft shadows from area lights, measured against ray-traced truth\n\n", pn_version());
+  fprintf(file, "penumbra %s: real-time soft shadows from area lights, measured against ray-traced truth\n\n",
+          pn_version());
   for (int i = 0; i < command_count; i++)
     fprintf(file, "  penumbra %-8s%-20s  %s\n", commands[i].name, commands[i].arguments, commands[i].summary);
   fputs("  penumbra --version\n\n"

@@ -12,7 +12,8 @@ static void print_devices(void) {
   puts("devices (--device N):");
   for (int i = 0; i < count && i < DEVICES_MAX; i++) {
     const struct device_info *d = &devices[i];
-    if (d->usable) printf("  %d  %s, OpenGL %s%s\n", d->number, d->renderer, d->version, d->software ? " (software)" : "");
+    if (d->usable)
+      printf("  %d  %s, OpenGL %s%s\n", d->number, d->renderer, d->version, d->software ? " (software)" : "");
     else printf("  %d  not usable: %s\n", d->number, d->problem);
   }
   if (!count) puts("  none");
@@ -28,14 +29,17 @@ static void on_message(void *user, pn_log_level level, int message_id, const cha
 static void print_context(const pn_context *context) {
   pn_info info;
   if (pn_context_info(context, &info) != PN_OK) return;
-  printf("  vendor          %s\n  renderer        %s\n  version         %s\n", info.vendor, info.renderer, info.version);
+  printf("  vendor          %s\n  renderer        %s\n  version         %s\n", info.vendor, info.renderer,
+         info.version);
   printf("  OpenGL          %d.%d core, %s\n", info.gl_version / 10, info.gl_version % 10,
-         info.software ? "software: times are glFinish and the system's clock" : "hardware: times are timestamp queries");
+         info.software ? "software: times are glFinish and the system's clock"
+                       : "hardware: times are timestamp queries");
   printf("  depth maps      up to %d x %d, %d layers\n", info.map_size_max, info.map_size_max, info.map_layers_max);
   puts("features:");
   const char *name, *help;
   int in_use;
-  for (int i = 0; pn_feature(context, i, &name, &in_use, &help); i++) printf("  %-3s  %-22s %s\n", in_use ? "yes" : "no", name, help);
+  for (int i = 0; pn_feature(context, i, &name, &in_use, &help); i++)
+    printf("  %-3s  %-22s %s\n", in_use ? "yes" : "no", name, help);
 }
 
 int command_info(const struct options *o) {

@@ -38,7 +38,8 @@ static int unknown_topic(const char *typed) {
   const char *names[TOPIC_COUNT];
   for (int i = 0; i < TOPIC_COUNT; i++) names[i] = topics[i].name;
   char hint[80];
-  if (nearest_name(typed, names, TOPIC_COUNT, hint, sizeof hint)) return input_error("list: unknown '%s'; %s", typed, hint);
+  if (nearest_name(typed, names, TOPIC_COUNT, hint, sizeof hint))
+    return input_error("list: unknown '%s'; %s", typed, hint);
   return input_error("list: '%s' is not techniques, scenes or studies", typed);
 }
 

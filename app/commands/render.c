@@ -9,6 +9,7 @@
 #include "label.h"
 #include "message.h"
 #include "output.h"
+#include "save.h"
 
 /* Until measurement finds the technique and preset that serve everyday use best. */
 static const char default_technique[] = "pcss";
@@ -21,7 +22,8 @@ struct picture {
 
 /* A fixed order of work: what can be wrong with the outputs is found before anything is drawn. */
 static int name_pictures(const struct options *o, const struct scene *scene, struct picture *pictures, int count) {
-  if (o->output && count > 1) return input_error("--output names one file, but there are %d techniques: leave it out", count);
+  if (o->output && count > 1)
+    return input_error("--output names one file, but there are %d techniques: leave it out", count);
   for (int i = 0; i < count; i++) {
     pictures[i].spec = o->technique_count ? o->techniques[i] : default_technique;
     pictures[i].path = o->output ? strdup(o->output) : picture_name(scene->name, pictures[i].spec, ".png");
@@ -29,10 +31,12 @@ static int name_pictures(const struct options *o, const struct scene *scene, str
     int status = output_check(pictures[i].path);
     if (status) return status;
   }
-  return o->json ? output_check(o->json) : STATUS_OK;
+  int status = o->json ? output_check(o->json) : STATUS_OK;
+  return !status && o->save_dir ? save_check(o->save_dir) : status;
 }
 
-static int measure_pictures(const struct options *o, struct host *host, struct picture *pictures, struct contestant *c, int count) {
+static int measure_pictures(const struct options *o, struct host *host, struct picture *pictures, struct contestant *c,
+                            int count) {
   const struct setup *setup = &host->scene->setup;
   for (int i = 0; i < count; i++) {
     int status = client_light(host->client, setup, &setup->light, pictures[i].spec, &pictures[i].light);
@@ -42,12 +46,39 @@ static int measure_pictures(const struct options *o, struct host *host, struct p
   return measure(c, count, o->frames, o->json != NULL);
 }
 
-static int write_picture(struct host *host, const struct view *view, const struct picture *picture, float *visibility, float *rgb) {
-  int status = client_frame(host->client, picture->light);
-  if (!status) status = client_visibility(host->client, picture->light, visibility);
+/* What one run draws into, and where it tells people what it wrote. */
+struct drawing {
+  const struct options *options;
+  struct host *host;
+  struct picture *pictures;
+  struct contestant *contestants;
+  int count;
+  struct view *view;
+  float *visibility, *rgb;
+  FILE *people;
+};
+
+static int save_visibility(const struct drawing *d, int index) {
+  const struct save save = {d->options->save_dir, d->people, d->view->width, d->view->height};
+  int status = index == 0 ? save_view(&save, d->view) : STATUS_OK;
+  char *name = save_name(index, d->pictures[index].spec);
+  if (!status) status = name ? save_scalars(&save, name, d->visibility) : memory_error();
+  free(name);
+  return status;
+}
+
+static int write_picture(const struct drawing *d, int index) {
+  const struct picture *picture = &d->pictures[index];
+  const struct timing *timing = &d->contestants[index].timing;
+  int status = client_frame(d->host->client, picture->light);
+  if (!status) status = client_visibility(d->host->client, picture->light, d->visibility);
   if (status) return status;
-  shade(view, &host->scene->setup.light, visibility, rgb);
-  return picture_write(picture->path, view->width, view->height, rgb);
+  shade(d->view, &d->host->scene->setup.light, d->visibility, d->rgb);
+  status = picture_write(picture->path, d->view->width, d->view->height, d->rgb);
+  if (status) return status;
+  fprintf(d->people, "%s  %.2f ms a frame (%s, median of %d)\n", picture->path, timing->median, picture->spec,
+          timing->frames);
+  return d->options->save_dir ? save_visibility(d, index) : STATUS_OK;
 }
 
 static void warn_if_unlit(const struct view *view) {
@@ -57,43 +88,48 @@ static void warn_if_unlit(const struct view *view) {
     drawn += view->position[3 * i] == view->position[3 * i];
   }
   if (!drawn) warning("the camera sees nothing of the scene: check --camera-position, --camera-target and --fov");
-  else if (!facing) warning("no receiver that the camera sees faces the light: check --light-center and --light-target");
+  else if (!facing)
+    warning("no receiver that the camera sees faces the light: check --light-center and --light-target");
 }
 
-static int write_json(const struct options *o, const struct host *host, const struct picture *pictures, const struct contestant *c, int count) {
-  cJSON *object = result_begin(host), *results = cJSON_AddArrayToObject(object, "results");
-  for (int i = 0; i < count && results; i++) {
+static int write_json(const struct drawing *d) {
+  cJSON *object = result_begin(d->host), *results = cJSON_AddArrayToObject(object, "results");
+  for (int i = 0; i < d->count && results; i++) {
     cJSON *result = cJSON_CreateObject();
     cJSON_AddItemToArray(results, result);
-    add_technique(result, pictures[i].spec);
-    cJSON_AddStringToObject(result, "file", pictures[i].path);
-    cJSON_AddItemToObject(result, "time_ms", timing_to_json(&c[i].timing));
+    add_technique(result, d->pictures[i].spec);
+    cJSON_AddStringToObject(result, "file", d->pictures[i].path);
+    cJSON_AddItemToObject(result, "time_ms", timing_to_json(&d->contestants[i].timing));
   }
-  return json_write(o->json, object);
+  int status = json_write(d->options->json, object);
+  if (!status && d->people == stdout) puts(d->options->json);
+  return status;
+}
+
+static int allocate(struct drawing *d) {
+  size_t pixels = (size_t)d->host->gbuffer->width * (size_t)d->host->gbuffer->height;
+  d->contestants = calloc((size_t)d->count + 1, sizeof *d->contestants);
+  d->visibility = malloc(pixels * sizeof *d->visibility);
+  d->rgb = malloc(pixels * 3 * sizeof *d->rgb);
+  if (!d->contestants || !d->visibility || !d->rgb) return memory_error();
+  return view_read(d->host->gbuffer, d->host->scene, &d->view);
 }
 
 static int draw_and_write(const struct options *o, struct host *host, struct picture *pictures, int count) {
-  struct contestant *c = calloc((size_t)count + 1, sizeof *c);
-  size_t pixels = (size_t)host->gbuffer->width * (size_t)host->gbuffer->height;
-  float *visibility = malloc(pixels * sizeof *visibility), *rgb = malloc(pixels * 3 * sizeof *rgb);
-  struct view *view = NULL;
-  int status = c && visibility && rgb ? view_read(host->gbuffer, host->scene, &view) : memory_error();
-  if (!status) {
-    warn_if_unlit(view);
-    status = measure_pictures(o, host, pictures, c, count);
-  }
+  struct drawing d = {.options = o, .host = host, .pictures = pictures, .count = count};
   /* With the JSON on standard output, people's lines make room. */
-  FILE *people = o->json && strcmp(o->json, "-") == 0 ? stderr : stdout;
-  for (int i = 0; i < count && !status; i++) {
-    status = write_picture(host, view, &pictures[i], visibility, rgb);
-    if (!status) fprintf(people, "%s  %.2f ms a frame (%s, median of %d)\n", pictures[i].path, c[i].timing.median, pictures[i].spec, c[i].timing.frames);
+  d.people = o->json && strcmp(o->json, "-") == 0 ? stderr : stdout;
+  int status = allocate(&d);
+  if (!status) {
+    warn_if_unlit(d.view);
+    status = measure_pictures(o, host, pictures, d.contestants, count);
   }
-  if (!status && o->json) status = write_json(o, host, pictures, c, count);
-  if (!status && o->json && people == stdout) puts(o->json);
-  view_free(&view);
-  free(visibility);
-  free(rgb);
-  free(c);
+  for (int i = 0; i < count && !status; i++) status = write_picture(&d, i);
+  if (!status && o->json) status = write_json(&d);
+  view_free(&d.view);
+  free(d.visibility);
+  free(d.rgb);
+  free(d.contestants);
   return status;
 }
 

@@ -20,7 +20,8 @@ static pn_gl upload(GLenum target, const void *data, size_t bytes) {
 static void triangle_normal(const struct mesh *mesh, uint32_t triangle, float out[4]) {
   double p[3][3], a[3], b[3], n[3];
   for (int c = 0; c < 3; c++)
-    for (int k = 0; k < 3; k++) p[c][k] = mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)triangle + (size_t)c] + (size_t)k];
+    for (int k = 0; k < 3; k++)
+      p[c][k] = mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)triangle + (size_t)c] + (size_t)k];
   v3_sub(p[1], p[0], a);
   v3_sub(p[2], p[0], b);
   v3_cross(a, b, n);
@@ -114,7 +115,8 @@ int gpu_scene_create(const struct scene *scene, struct gpu_scene **out) {
   if (!gpu->meshes || !gpu->textures) status = memory_error();
   for (int i = 0; i < scene->texture_count && !status; i++) gpu->textures[i] = upload_texture(&scene->textures[i]);
   for (int i = 0; i < scene->mesh_count && !status; i++) status = upload_mesh(&scene->meshes[i], &gpu->meshes[i]);
-  if (!status && glGetError() == GL_OUT_OF_MEMORY) status = work_error("the GL device ran out of memory for the scene's triangles");
+  if (!status && glGetError() == GL_OUT_OF_MEMORY)
+    status = work_error("the GL device ran out of memory for the scene's triangles");
   if (status) gpu_scene_free(&gpu);
   *out = gpu;
   return status;

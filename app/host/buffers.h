@@ -4,7 +4,8 @@
 
 #include "scene/scene.h"
 
-/* Triangles are drawn in runs, each with its normals in a texture buffer of its own, because a texture buffer's size is limited. */
+/* Triangles are drawn in runs, each with its normals in a texture buffer of its own, because a texture buffer's
+ * size is limited. */
 struct gpu_run {
   uint32_t first, count; /* triangles */
   pn_gl normals, normal_buffer;

@@ -74,13 +74,14 @@ static int find_candidates(struct candidate *out) {
 }
 
 static EGLDisplay get_display(const struct candidate *candidate) {
-  PFNEGLGETPLATFORMDISPLAYEXTPROC platform = (PFNEGLGETPLATFORMDISPLAYEXTPROC)eglGetProcAddress("eglGetPlatformDisplayEXT");
+  PFNEGLGETPLATFORMDISPLAYEXTPROC platform =
+      (PFNEGLGETPLATFORMDISPLAYEXTPROC)eglGetProcAddress("eglGetPlatformDisplayEXT");
   switch (candidate->kind) {
-    case KIND_DEVICE: return platform ? platform(EGL_PLATFORM_DEVICE_EXT, candidate->device, NULL) : EGL_NO_DISPLAY;
-    case KIND_SURFACELESS_SOFTWARE:
-      setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-      return platform ? platform(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL) : EGL_NO_DISPLAY;
-    case KIND_DEFAULT: return eglGetDisplay(EGL_DEFAULT_DISPLAY);
+  case KIND_DEVICE: return platform ? platform(EGL_PLATFORM_DEVICE_EXT, candidate->device, NULL) : EGL_NO_DISPLAY;
+  case KIND_SURFACELESS_SOFTWARE:
+    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+    return platform ? platform(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL) : EGL_NO_DISPLAY;
+  case KIND_DEFAULT: return eglGetDisplay(EGL_DEFAULT_DISPLAY);
   }
   return EGL_NO_DISPLAY;
 }
@@ -88,8 +89,13 @@ static EGLDisplay get_display(const struct candidate *candidate) {
 static EGLContext create_context(EGLDisplay display, EGLConfig config) {
   static const int versions[][2] = {{4, 5}, {4, 4}, {4, 3}, {4, 2}, {4, 1}, {4, 0}, {3, 3}};
   for (size_t i = 0; i < sizeof versions / sizeof *versions; i++) {
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION_KHR, versions[i][0], EGL_CONTEXT_MINOR_VERSION_KHR, versions[i][1],
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK_KHR, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT_KHR, EGL_NONE};
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION_KHR,
+                                 versions[i][0],
+                                 EGL_CONTEXT_MINOR_VERSION_KHR,
+                                 versions[i][1],
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK_KHR,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT_KHR,
+                                 EGL_NONE};
     EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
     if (context != EGL_NO_CONTEXT) return context;
   }
@@ -104,9 +110,11 @@ static const char *start(struct device *device) {
   int surfaceless = has_word(extensions, "EGL_KHR_surfaceless_context");
   EGLConfig config = NULL;
   if (!surfaceless || !has_word(extensions, "EGL_KHR_no_config_context")) {
-    const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, surfaceless ? 0 : EGL_PBUFFER_BIT, EGL_NONE};
+    const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, surfaceless ? 0 : EGL_PBUFFER_BIT,
+                             EGL_NONE};
     EGLint count = 0;
-    if (!eglChooseConfig(device->display, wanted, &config, 1, &count) || count < 1) return "its driver offers no configuration";
+    if (!eglChooseConfig(device->display, wanted, &config, 1, &count) || count < 1)
+      return "its driver offers no configuration";
   }
   device->context = create_context(device->display, config);
   if (device->context == EGL_NO_CONTEXT) return "its driver has no OpenGL 3.3 core";
@@ -114,7 +122,8 @@ static const char *start(struct device *device) {
     const EGLint size[] = {EGL_WIDTH, 1, EGL_HEIGHT, 1, EGL_NONE};
     device->surface = eglCreatePbufferSurface(device->display, config, size);
   }
-  if (!eglMakeCurrent(device->display, device->surface, device->surface, device->context)) return "its context cannot be made current";
+  if (!eglMakeCurrent(device->display, device->surface, device->surface, device->context))
+    return "its context cannot be made current";
   return NULL;
 }
 
@@ -189,8 +198,9 @@ int device_open(const char *which, struct device **out) {
   if (!only_software) *out = open_first(candidates, count, 0);
   if (!*out) *out = open_first(candidates, count, 1);
   if (*out) return STATUS_OK;
-  return work_error(only_software ? "no software OpenGL 3.3 was found (Mesa's is in the package libgl1-mesa-dri)"
-                                  : "no OpenGL 3.3 device was found (Mesa's software rasteriser is in the package libgl1-mesa-dri)");
+  return work_error(
+      only_software ? "no software OpenGL 3.3 was found (Mesa's is in the package libgl1-mesa-dri)"
+                    : "no OpenGL 3.3 device was found (Mesa's software rasteriser is in the package libgl1-mesa-dri)");
 }
 
 int device_list(struct device_info *out, int capacity) {
@@ -212,18 +222,10 @@ int device_list(struct device_info *out, int capacity) {
   return count;
 }
 
-const char *device_renderer(const struct device *device) {
-  return device->renderer;
-}
+const char *device_renderer(const struct device *device) { return device->renderer; }
 
-const char *device_version(const struct device *device) {
-  return device->version;
-}
+const char *device_version(const struct device *device) { return device->version; }
 
-int device_number(const struct device *device) {
-  return device->number;
-}
+int device_number(const struct device *device) { return device->number; }
 
-int device_is_software(const struct device *device) {
-  return device->software;
-}
+int device_is_software(const struct device *device) { return device->software; }

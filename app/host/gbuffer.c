@@ -10,18 +10,18 @@
 #include "message.h"
 #include "scene/vector.h"
 
-static const char vertex_source[] =
-    "#version 330 core\n"
-    "layout(location = 0) in vec3 position;\n"
-    "layout(location = 1) in vec2 texcoord;\n"
-    "uniform mat4 clip_from_object;\n"
-    "out vec2 uv;\n"
-    "void main() {\n"
-    "  uv = texcoord;\n"
-    "  gl_Position = clip_from_object * vec4(position, 1.0);\n"
-    "}\n";
+static const char vertex_source[] = "#version 330 core\n"
+                                    "layout(location = 0) in vec3 position;\n"
+                                    "layout(location = 1) in vec2 texcoord;\n"
+                                    "uniform mat4 clip_from_object;\n"
+                                    "out vec2 uv;\n"
+                                    "void main() {\n"
+                                    "  uv = texcoord;\n"
+                                    "  gl_Position = clip_from_object * vec4(position, 1.0);\n"
+                                    "}\n";
 
-/* The normal's side follows the winding on the screen, which stays right under mirroring transforms, where normals are made with cofactors. */
+/* The normal's side follows the winding on the screen, which stays right under mirroring transforms, where normals
+ * are made with cofactors. */
 static const char fragment_source[] =
     "#version 330 core\n"
     "in vec2 uv;\n"
@@ -86,7 +86,8 @@ static int make_targets(struct gbuffer *g) {
   g->depth = make_texture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, g->width, g->height);
   g->normal = make_texture(GL_RGBA32F, GL_RGBA, GL_FLOAT, g->width, g->height);
   g->mask = make_texture(GL_R8, GL_RED, GL_UNSIGNED_BYTE, g->width, g->height);
-  if (glGetError() == GL_OUT_OF_MEMORY) return work_error("the GL device ran out of memory for a picture of %dx%d", g->width, g->height);
+  if (glGetError() == GL_OUT_OF_MEMORY)
+    return work_error("the GL device ran out of memory for a picture of %dx%d", g->width, g->height);
   glGenFramebuffers(1, &g->framebuffer);
   glBindFramebuffer(GL_FRAMEBUFFER, g->framebuffer);
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, g->depth, 0);
@@ -218,7 +219,8 @@ static double eye_distance(const struct gbuffer *g, double depth) {
   return g->projection[14] / (2 * depth - 1 + g->projection[10]);
 }
 
-/* Planes around everything first, then close around what that showed: the depth buffer's precision is what the surface's positions have. */
+/* Planes around everything first, then close around what that showed: the depth buffer's precision is what the
+ * surface's positions have. */
 static int draw_tightly(struct gbuffer *g, const struct gpu_scene *gpu) {
   const struct scene *scene = gpu->scene;
   double far = 0, near = DBL_MAX, z[3] = {g->view[2], g->view[6], g->view[10]};

@@ -18,8 +18,8 @@ void gbuffer_free(struct gbuffer **gbuffer);
 /* The same on the CPU, top row first. Background: NaN positions and normals, mask and receives 0. */
 struct view {
   int width, height;
-  float *position; /* 3 a pixel, scene space */
-  float *normal;   /* 3 a pixel, unit, turned to the camera */
+  float *position;   /* 3 a pixel, scene space */
+  float *normal;     /* 3 a pixel, unit, turned to the camera */
   uint8_t *receives; /* the surface receives */
   float *mask;       /* contract: 1 where the surface receives and faces all of the light, else 0 */
 };

@@ -9,7 +9,8 @@ int host_open(const struct scene *scene, const char *device, struct host *host) 
   host->scene = scene;
   int status = device_open(device, &host->device);
   if (!status) {
-    note("device %d: %s, OpenGL %s", device_number(host->device), device_renderer(host->device), device_version(host->device));
+    note("device %d: %s, OpenGL %s", device_number(host->device), device_renderer(host->device),
+         device_version(host->device));
     status = gpu_scene_create(scene, &host->gpu);
   }
   if (!status) status = gbuffer_create(host->gpu, &host->gbuffer);

@@ -14,8 +14,8 @@ static const double limit_ms = 3000;
 
 /* What one contestant's frames took. */
 struct record {
-  double *totals;                /* [frames] */
-  double *stages[STAGES_MAX];    /* [frames] each; NULL until the stage appears */
+  double *totals;             /* [frames] */
+  double *stages[STAGES_MAX]; /* [frames] each; NULL until the stage appears */
   int frames, warmed, done;
   double sum;
 };
@@ -132,7 +132,8 @@ cJSON *timing_to_json(const struct timing *timing) {
   cJSON_AddNumberToObject(total, "min", timing->min);
   cJSON_AddNumberToObject(total, "max", timing->max);
   cJSON *stages = cJSON_AddObjectToObject(object, "stages");
-  for (int i = 0; i < timing->stage_count; i++) cJSON_AddNumberToObject(stages, timing->stages[i].name, timing->stages[i].median);
+  for (int i = 0; i < timing->stage_count; i++)
+    cJSON_AddNumberToObject(stages, timing->stages[i].name, timing->stages[i].median);
   cJSON_AddNumberToObject(object, "frames", timing->frames);
   return object;
 }

@@ -1,4 +1,5 @@
-/* measure.h: frame times. Contestants are measured in turn, frame by frame (A B A B), so that a machine that slows down slows all of them. */
+/* measure.h: frame times. Contestants are measured in turn, frame by frame (A B A B), so that a machine that slows
+ * down slows all of them. */
 #ifndef PENUMBRA_APP_HOST_MEASURE_H
 #define PENUMBRA_APP_HOST_MEASURE_H
 
@@ -9,7 +10,7 @@
 enum { STAGES_MAX = 24 };
 
 struct timing {
-  int frames; /* that were timed */
+  int frames;              /* that were timed */
   double median, min, max; /* milliseconds a frame: maps and visibility of all the contestant's lights */
   int stage_count;
   struct {
@@ -23,12 +24,13 @@ struct contestant {
   struct client *client;
   pn_light **lights;
   int light_count;
-  int in_scope; /* frames stand between pn_state_begin and pn_state_end */
+  int in_scope;         /* frames stand between pn_state_begin and pn_state_end */
   struct timing timing; /* the result */
 };
 
-/* Three warm-up frames, then up to frames timed ones; a contestant also ends after 3 s, never before one frame, and where the very first frame
- * takes longer than that it is the measurement. With stages, the library's clocks are on. Exit status. */
+/* Three warm-up frames, then up to frames timed ones; a contestant also ends after 3 s, never before one frame, and
+ * where the very first frame takes longer than that it is the measurement. With stages, the library's clocks are
+ * on. Exit status. */
 int measure(struct contestant *contestants, int count, int frames, int stages);
 
 /* {"total": {"median", "min", "max"}, "stages": {...}, "frames"}; NULL: out of memory. */

@@ -27,7 +27,8 @@ static int clip_at_horizon(double corners[4][3], const double n[3], double out[8
   return count;
 }
 
-/* Lambert's edge sum: each edge adds its angle times the cosine between n and the normal of the plane through the edge. */
+/* Lambert's edge sum: each edge adds its angle times the cosine between n and the normal of the plane through the
+ * edge. */
 static double edge_sum(double polygon[8][3], int count, const double n[3]) {
   double sum = 0;
   for (int i = 0; i < count; i++) {

@@ -8,8 +8,8 @@
 #include "message.h"
 #include "scene/vector.h"
 
-/* eye = P^-1 (pixel, depth), scene = V^-1 eye, in double from the very matrices the library is given. V is a rotation and a translation, up
- * to rounding; its inverse is by cofactors, so that the rounding is undone too. */
+/* eye = P^-1 (pixel, depth), scene = V^-1 eye, in double from the very matrices the library is given. V is a
+ * rotation and a translation, up to rounding; its inverse is by cofactors, so that the rounding is undone too. */
 struct unprojection {
   double p0, p5, p10, p14, inverse[3][3], translation[3];
 };
@@ -40,7 +40,8 @@ static void unproject(const struct unprojection *u, double ndc_x, double ndc_y, 
 }
 
 /* Whether the surface faces every corner of the light, and lies in front of it. */
-static int faces_light(const struct light *light, double corners[4][3], const float position[3], const float normal[3]) {
+static int faces_light(const struct light *light, double corners[4][3], const float position[3],
+                       const float normal[3]) {
   double p[3], n[3], d[3];
   for (int k = 0; k < 3; k++) {
     p[k] = position[k];

@@ -14,7 +14,8 @@ const struct builtin builtins[] = {
     {"boxes", "two boxes above each other over a floor: occluder fusion", build_boxes, 0, 0},
     {"cylinder", "a cylinder standing on a floor: contact hardening", build_cylinder, 0, 0},
     {"balls", "3 x 3 x 3 balls: occluders hidden behind occluders", build_balls, 0, 0},
-    {"silhouette", "the edges that decide the shadow are hidden from the light's centre; lifted", build_silhouette, 0, 0},
+    {"silhouette", "the edges that decide the shadow are hidden from the light's centre; lifted", build_silhouette, 0,
+     0},
     {"silhouette-standing", "the same, standing on the floor", build_silhouette_standing, 0, 0},
     {"fence", "thin bars and wire netting", build_fence, 0, 0},
     {"leaves", "leaves cut out by an alpha-tested texture", build_leaves, 0, 0},
@@ -40,9 +41,9 @@ static int unknown(const char *name) {
   const char *names[64];
   for (int i = 0; i < builtin_count; i++) names[i] = builtins[i].name;
   char hint[80];
-  return input_error("builtin:%s: no such scene; %s", name, nearest_name(name, names, builtin_count, hint, sizeof hint)
-                                                                ? hint
-                                                                : "penumbra list scenes names them");
+  return input_error("builtin:%s: no such scene; %s", name,
+                     nearest_name(name, names, builtin_count, hint, sizeof hint) ? hint
+                                                                                 : "penumbra list scenes names them");
 }
 
 /* "copies=64": N. Exit status. */

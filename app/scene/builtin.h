@@ -4,7 +4,8 @@
 
 #include "scene.h"
 
-/* build fills an empty scene whose set-up is the standard one for B = the origin and H = 1, and may change it. 0, or -1: out of memory. */
+/* build fills an empty scene whose set-up is the standard one for B = the origin and H = 1, and may change it. 0,
+ * or -1: out of memory. */
 struct builtin {
   const char *name, *summary;
   int (*build)(struct scene *scene, int count);

@@ -13,7 +13,8 @@ static void set3(double out[3], double x, double y, double z) {
 /* Seen from inside. Nothing in a convex room stands between its walls and the light, so they only receive. */
 static void walls(struct shape *shape, double half_x, double height, double half_z) {
   uint32_t c[8];
-  for (int i = 0; i < 8; i++) c[i] = shape_vertex(shape, i & 1 ? half_x : -half_x, i & 2 ? height : 0, i & 4 ? half_z : -half_z);
+  for (int i = 0; i < 8; i++)
+    c[i] = shape_vertex(shape, i & 1 ? half_x : -half_x, i & 2 ? height : 0, i & 4 ? half_z : -half_z);
   shape_quad(shape, c[0], c[4], c[5], c[1]); /* floor */
   shape_quad(shape, c[2], c[3], c[7], c[6]); /* ceiling */
   shape_quad(shape, c[0], c[1], c[3], c[2]);
@@ -22,10 +23,12 @@ static void walls(struct shape *shape, double half_x, double height, double half
   shape_quad(shape, c[1], c[5], c[7], c[3]);
 }
 
-static void table(struct shape *shape, double x, double z, double width, double depth, double height, double top, double leg) {
+static void table(struct shape *shape, double x, double z, double width, double depth, double height, double top,
+                  double leg) {
   shape_box(shape, x, z, height - top, height, width, depth);
   for (int i = 0; i < 4; i++)
-    shape_box(shape, x + (i & 1 ? 0.5 : -0.5) * (width - 2 * leg), z + (i & 2 ? 0.5 : -0.5) * (depth - 2 * leg), 0, height - top, leg, leg);
+    shape_box(shape, x + (i & 1 ? 0.5 : -0.5) * (width - 2 * leg), z + (i & 2 ? 0.5 : -0.5) * (depth - 2 * leg), 0,
+              height - top, leg, leg);
 }
 
 static void chair(struct shape *shape, double x, double z, double back) {
@@ -41,8 +44,8 @@ int build_room(struct scene *scene, int count) {
   table(&shape, 0.1, -0.3, 1.6, 0.9, 0.75, 0.04, 0.06);
   chair(&shape, -0.25, 0.35, 1);
   chair(&shape, 0.45, -1.05, -1);
-  shape_box(&shape, -1.68, -0.6, 0, 2.25, 0.6, 1.4);   /* a wardrobe whose top is almost level with the lamp */
-  shape_box(&shape, 1.8, -1.2, 1.5, 1.54, 0.3, 1.6);   /* a shelf with two things on it */
+  shape_box(&shape, -1.68, -0.6, 0, 2.25, 0.6, 1.4); /* a wardrobe whose top is almost level with the lamp */
+  shape_box(&shape, 1.8, -1.2, 1.5, 1.54, 0.3, 1.6); /* a shelf with two things on it */
   shape_box(&shape, 1.8, -1.6, 1.54, 1.8, 0.2, 0.25);
   shape_box(&shape, 1.8, -0.8, 1.54, 1.7, 0.2, 0.4);
   if (shape_add_to(&shape, scene, 1, 1)) return -1;

@@ -38,14 +38,15 @@ int build_balls(struct scene *scene, int count) {
   int mesh = shape_finish(&shape, scene, -1, 0);
   if (mesh < 0) return -1;
   for (int i = 0; i < 27; i++) {
-    float m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, (float)((i % 3 - 1) * step), (float)(radius + i / 3 % 3 * step), (float)((i / 9 - 1) * step), 1};
-    if (scene_add_instance(scene, mesh, m, 1, 1) < 0) return -1;
+    const double place[3] = {(i % 3 - 1) * step, radius + i / 3 % 3 * step, (i / 9 - 1) * step};
+    const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
+    if (shape_place(scene, mesh, x, y, z, place)) return -1;
   }
   return builtin_floor(scene);
 }
 
-/* From the light's centre (height 3) the plate covers the box below it, which is wider than the plate; from the light's corners the box shows, and
- * its edges bound the shadow. A single depth map never holds them. */
+/* From the light's centre (height 3) the plate covers the box below it, which is wider than the plate; from the
+ * light's corners the box shows, and its edges bound the shadow. A single depth map never holds them. */
 static int silhouette(struct scene *scene, double y0, double y1) {
   struct shape shape = {0};
   shape_box(&shape, 0, 0, 0.9, 0.95, 0.6, 0.6);
@@ -87,12 +88,11 @@ int build_copies(struct scene *scene, int count) {
   int columns = (int)ceil(sqrt(count));
   double cell = 1.6 / columns, size = 0.46 * cell;
   for (int i = 0; i < count; i++) {
-    double a = 0.7 * i, b = 1.3 * i, ca = cos(a), sa = sin(a), cb = cos(b), sb = sin(b);
-    double x = -0.8 + (i % columns + 0.5) * cell, z = -0.8 + (i / columns + 0.5) * cell, y = 1.05 * size + 0.5 * (0.5 + 0.5 * sin(2.1 * i));
-    float m[16] = {(float)(size * ca), (float)(size * sa * cb), (float)(size * sa * sb), 0,
-                   (float)(-size * sa), (float)(size * ca * cb), (float)(size * ca * sb), 0,
-                   0, (float)(-size * sb), (float)(size * cb), 0, (float)x, (float)y, (float)z, 1};
-    if (scene_add_instance(scene, mesh, m, 1, 1) < 0) return -1;
+    double a = 0.7 * i, b = 1.3 * i, ca = size * cos(a), sa = size * sin(a), cb = cos(b), sb = sin(b);
+    const double place[3] = {-0.8 + (i % columns + 0.5) * cell, 1.05 * size + 0.25 * (1 + sin(2.1 * i)),
+                             -0.8 + (i / columns + 0.5) * cell};
+    const double x[3] = {ca, sa * cb, sa * sb}, y[3] = {-sa, ca * cb, ca * sb}, z[3] = {0, -size * sb, size * cb};
+    if (shape_place(scene, mesh, x, y, z, place)) return -1;
   }
   return builtin_floor(scene);
 }

@@ -91,15 +91,15 @@ int build_leaves(struct scene *scene, int count) {
   if (leaf < 0) return -1;
   uint32_t seed = 7;
   for (int i = 0; i < 70; i++) {
-    double around = 2.39996323 * i, height = 0.25 + 0.6 * (i + 0.5) / 70, reach = 0.42 * sqrt(1 - pow(2 * height - 1.1, 2));
+    double around = 2.39996323 * i, height = 0.25 + 0.6 * (i + 0.5) / 70,
+           reach = 0.42 * sqrt(1 - pow(2 * height - 1.1, 2));
     double lean = 0.9 + 0.5 * chance(&seed), size = 0.2 + 0.08 * chance(&seed);
-    double ca = cos(around), sa = sin(around), cl = cos(lean), sl = sin(lean), r = reach * (0.25 + 0.6 * chance(&seed));
+    double ca = cos(around), sa = sin(around), cl = size * cos(lean), sl = size * sin(lean);
+    double r = reach * (0.25 + 0.6 * chance(&seed));
     /* x across the leaf, y along it (outwards and up), z its normal. */
-    float m[16] = {(float)(size * -sa), 0, (float)(size * ca), 0,
-                   (float)(size * sl * ca), (float)(size * cl), (float)(size * sl * sa), 0,
-                   (float)(size * -cl * ca), (float)(size * sl), (float)(size * -cl * sa), 0,
-                   (float)(r * ca), (float)height, (float)(r * sa), 1};
-    if (scene_add_instance(scene, leaf, m, 1, 1) < 0) return -1;
+    const double x[3] = {-size * sa, 0, size * ca}, y[3] = {sl * ca, cl, sl * sa}, z[3] = {-cl * ca, sl, -cl * sa};
+    const double place[3] = {r * ca, height, r * sa};
+    if (shape_place(scene, leaf, x, y, z, place)) return -1;
   }
   struct shape shape = {0};
   shape_cylinder(&shape, 0.02, 0, 0.85, 16);

@@ -20,8 +20,9 @@
 #include "message.h"
 #include "scene_parts.h"
 
-/* What an import may take. A binary STL has 50 bytes a triangle and no format that people use has fewer than 16, so the memory allows the
- * 1 KB a triangle that importing is meant to stay under; the time is many times what the slowest text format was seen to need. */
+/* What an import may take. A binary STL has 50 bytes a triangle and no format that people use has fewer than 16, so
+ * the memory allows the 1 KB a triangle that importing is meant to stay under; the time is many times what the
+ * slowest text format was seen to need. */
 enum { IMPORT_SECONDS = 20, IMPORT_SECONDS_PER_16_MB = 20, IMPORT_MB = 1024, IMPORT_BYTES_PER_BYTE = 64 };
 
 static unsigned import_seconds(off_t size) {
@@ -103,11 +104,13 @@ static void *read_array(int fd, size_t count, size_t element) {
 enum received { RECEIVED_MORE, RECEIVED_END, RECEIVED_ERROR, RECEIVED_BROKEN };
 
 static enum received receive_mesh(int fd, const struct record *r, struct scene *scene) {
-  struct mesh mesh = {.vertex_count = r->vertex_count, .triangle_count = r->triangle_count, .texture = r->texture, .cutoff = r->cutoff};
+  struct mesh mesh = {
+      .vertex_count = r->vertex_count, .triangle_count = r->triangle_count, .texture = r->texture, .cutoff = r->cutoff};
   if (r->texture >= scene->texture_count || r->triangle_count > UINT32_MAX / 3) return RECEIVED_BROKEN;
   mesh.positions = read_array(fd, r->vertex_count, 3 * sizeof(float));
   if (mesh.positions && r->texture >= 0) mesh.texcoords = read_array(fd, r->vertex_count, 2 * sizeof(float));
-  if (mesh.positions && (r->texture < 0 || mesh.texcoords)) mesh.indices = read_array(fd, r->triangle_count, 3 * sizeof(uint32_t));
+  if (mesh.positions && (r->texture < 0 || mesh.texcoords))
+    mesh.indices = read_array(fd, r->triangle_count, 3 * sizeof(uint32_t));
   int broken = !mesh.indices;
   for (size_t i = 0; !broken && i < 3 * (size_t)mesh.triangle_count; i++) broken = mesh.indices[i] >= mesh.vertex_count;
   if (broken) {
@@ -140,15 +143,15 @@ static enum received receive(int fd, const char *path, struct scene *scene) {
   struct record r;
   if (read_all(fd, &r, sizeof r)) return RECEIVED_BROKEN;
   switch (r.tag) {
-    case RECORD_MESH: return receive_mesh(fd, &r, scene);
-    case RECORD_TEXTURE: return receive_texture(fd, &r, scene);
-    case RECORD_INSTANCE:
-      if (r.mesh < 0 || r.mesh >= scene->mesh_count) return RECEIVED_BROKEN;
-      return scene_add_instance(scene, r.mesh, r.scene_from_object, 1, 1) < 0 ? RECEIVED_BROKEN : RECEIVED_MORE;
-    case RECORD_WARNING:
-    case RECORD_ERROR: return receive_text(fd, &r, path);
-    case RECORD_END: return RECEIVED_END;
-    default: return RECEIVED_BROKEN;
+  case RECORD_MESH: return receive_mesh(fd, &r, scene);
+  case RECORD_TEXTURE: return receive_texture(fd, &r, scene);
+  case RECORD_INSTANCE:
+    if (r.mesh < 0 || r.mesh >= scene->mesh_count) return RECEIVED_BROKEN;
+    return scene_add_instance(scene, r.mesh, r.scene_from_object, 1, 1) < 0 ? RECEIVED_BROKEN : RECEIVED_MORE;
+  case RECORD_WARNING:
+  case RECORD_ERROR: return receive_text(fd, &r, path);
+  case RECORD_END: return RECEIVED_END;
+  default: return RECEIVED_BROKEN;
   }
 }
 
@@ -157,8 +160,9 @@ static int explain_death(const char *path, int wait_status, off_t size) {
   if (WIFSIGNALED(wait_status)) {
     int number = WTERMSIG(wait_status);
     if (number == SIGXCPU || number == SIGKILL)
-      return input_error("%s: importing took more than %u s, which is too long for a file of its size; it is probably damaged", path,
-                         import_seconds(size));
+      return input_error(
+          "%s: importing took more than %u s, which is too long for a file of its size; it is probably damaged", path,
+          import_seconds(size));
     return input_error("%s: the importer crashed on it (%s); the file is probably damaged", path, strsignal(number));
   }
   return input_error("%s: the importer gave up on it; the file is probably damaged or far too large", path);
@@ -194,7 +198,8 @@ int import_model(const char *path, int up_is_z, struct scene **out) {
   close(fd);
   if (last != RECEIVED_BROKEN) kill(child, SIGKILL); /* it has nothing left to say; freeing what it holds takes time */
   int wait_status = 0;
-  while (waitpid(child, &wait_status, 0) < 0 && errno == EINTR) {}
+  while (waitpid(child, &wait_status, 0) < 0 && errno == EINTR) {
+  }
   interrupt_watch_child(0);
   if (last == RECEIVED_END) {
     *out = scene;

@@ -1,6 +1,6 @@
-/* import.h: the importer runs in a process of its own, because Assimp may take any time and memory over a hostile file, or crash. The
- * child sends records over a pipe: meshes, instances, textures, counts; the parent builds the scene from them. Both are the same
- * program image, so structs travel as they are. */
+/* import.h: the importer runs in a process of its own, because Assimp may take any time and memory over a hostile
+ * file, or crash. The child sends records over a pipe: meshes, instances, textures, counts; the parent builds the
+ * scene from them. Both are the same program image, so structs travel as they are. */
 #ifndef PENUMBRA_APP_SCENE_IMPORT_H
 #define PENUMBRA_APP_SCENE_IMPORT_H
 

@@ -41,15 +41,18 @@ static const struct aiScene *read_model(const char *path) {
   aiSetImportPropertyInteger(settings, AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   aiSetImportPropertyInteger(settings, AI_CONFIG_PP_RVC_FLAGS,
                              aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-                                 aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS | aiComponent_LIGHTS | aiComponent_CAMERAS);
+                                 aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS | aiComponent_LIGHTS |
+                                 aiComponent_CAMERAS);
   aiSetImportPropertyInteger(settings, AI_CONFIG_FAVOUR_SPEED, 1);
-  unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent | aiProcess_TransformUVCoords;
+  unsigned steps =
+      aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent | aiProcess_TransformUVCoords;
   const struct aiScene *model = aiImportFileExWithProperties(path, steps, NULL, settings);
   aiReleasePropertyStore(settings);
   return model;
 }
 
-/* Assimp's matrices are row-major. --up z turns the file's z to y, and its y to -z. Returns 0 where it is not a finite affine matrix. */
+/* Assimp's matrices are row-major. --up z turns the file's z to y, and its y to -z. Returns 0 where it is not a
+ * finite affine matrix. */
 static int to_columns(const struct aiMatrix4x4 *m, int up_is_z, float out[16]) {
   const float rows[3][4] = {{m->a1, m->a2, m->a3, m->a4}, {m->b1, m->b2, m->b3, m->b4}, {m->c1, m->c2, m->c3, m->c4}};
   for (int column = 0; column < 4; column++) {
@@ -74,7 +77,8 @@ static int flattens(const float m[16]) {
   return (x == 0) + (y == 0) + (z == 0) > 1;
 }
 
-static void send_instance(struct importer *importer, unsigned mesh_index, const struct aiMatrix4x4 *transform, int up_is_z) {
+static void send_instance(struct importer *importer, unsigned mesh_index, const struct aiMatrix4x4 *transform,
+                          int up_is_z) {
   if (mesh_index >= importer->model->mNumMeshes) return;
   struct record r = {.tag = RECORD_INSTANCE};
   if (!to_columns(transform, up_is_z, r.scene_from_object) || flattens(r.scene_from_object)) {
@@ -94,7 +98,8 @@ static void send_instance(struct importer *importer, unsigned mesh_index, const 
   importer->instance_count++;
 }
 
-static void send_node(struct importer *importer, const struct aiNode *node, struct aiMatrix4x4 parent, int up_is_z, int depth) {
+static void send_node(struct importer *importer, const struct aiNode *node, struct aiMatrix4x4 parent, int up_is_z,
+                      int depth) {
   if (depth > NODE_DEPTH_MAX) return;
   struct aiMatrix4x4 transform = parent;
   aiMultiplyMatrix4(&transform, &node->mTransformation);
@@ -108,10 +113,13 @@ static void describe_dropped(const struct importer *importer, char *text, size_t
   const struct {
     uint64_t count;
     const char *one, *many;
-  } rows[] = {{importer->dropped_nan, "triangle with a coordinate that is not finite", "triangles with coordinates that are not finite"},
+  } rows[] = {{importer->dropped_nan, "triangle with a coordinate that is not finite",
+               "triangles with coordinates that are not finite"},
               {importer->dropped_area, "triangle without area", "triangles without area"},
-              {importer->dropped_index, "triangle with a corner that does not exist", "triangles with corners that do not exist"},
-              {importer->dropped_instances, "mesh placed with an unusable transform", "meshes placed with unusable transforms"}};
+              {importer->dropped_index, "triangle with a corner that does not exist",
+               "triangles with corners that do not exist"},
+              {importer->dropped_instances, "mesh placed with an unusable transform",
+               "meshes placed with unusable transforms"}};
   *text = 0;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     if (!rows[i].count) continue;
@@ -128,7 +136,8 @@ static void send_import_error(int fd) {
   char line[300];
   size_t length = 0;
   for (; *text && length < sizeof line - 1; text++)
-    if (!(*text == '\n' || *text == '\r') || (length && line[length - 1] != ' ')) line[length++] = *text == '\n' || *text == '\r' ? ' ' : *text;
+    if (!(*text == '\n' || *text == '\r') || (length && line[length - 1] != ' '))
+      line[length++] = *text == '\n' || *text == '\r' ? ' ' : *text;
   while (length && line[length - 1] == ' ') length--;
   line[length] = 0;
   if (strstr(line, "No meshes remaining")) {
@@ -136,7 +145,8 @@ static void send_import_error(int fd) {
     return;
   }
   if (strstr(line, "bad_alloc") || strstr(line, "bad_array_new_length")) {
-    send_text(fd, RECORD_ERROR, "importing it takes more memory than a file of its size should need; it is probably damaged");
+    send_text(fd, RECORD_ERROR,
+              "importing it takes more memory than a file of its size should need; it is probably damaged");
     return;
   }
   send_text(fd, RECORD_ERROR, "cannot be imported: %s", line);
@@ -160,7 +170,8 @@ void import_child(const char *path, int up_is_z, int fd) {
   char dropped[300];
   describe_dropped(&importer, dropped, sizeof dropped);
   if (importer.instance_count == 0) {
-    send_text(fd, RECORD_ERROR, "holds no usable triangles%s%s", *dropped ? ": " : "; a model needs triangles or polygons", dropped);
+    send_text(fd, RECORD_ERROR, "holds no usable triangles%s%s",
+              *dropped ? ": " : "; a model needs triangles or polygons", dropped);
     return;
   }
   if (*dropped) send_text(fd, RECORD_WARNING, "%s", dropped);

@@ -12,7 +12,7 @@ struct importer {
   int fd;
   const char *path;
   const struct aiScene *model;
-  struct sent_mesh *sent; /* one for each of the model's meshes */
+  struct sent_mesh *sent;        /* one for each of the model's meshes */
   struct material_alpha *alphas; /* one for each material */
   int mesh_count, texture_count, instance_count;
   uint64_t dropped_nan, dropped_area, dropped_index, dropped_instances;
@@ -31,8 +31,8 @@ struct material_alpha {
 /* Reads the alpha of every material and sends the textures it needs; what cannot be read is opaque, with a warning. */
 void send_materials(struct importer *importer);
 
-/* Compacts a mesh (vertices at the same place shared, triangles without area or with impossible corners dropped) and sends it. Returns its
- * number in the scene, or -1 where no triangle is left. */
+/* Compacts a mesh (vertices at the same place shared, triangles without area or with impossible corners dropped)
+ * and sends it. Returns its number in the scene, or -1 where no triangle is left. */
 int send_mesh(struct importer *importer, const struct aiMesh *mesh, const struct material_alpha *alpha);
 
 #endif

@@ -31,8 +31,8 @@ static int texture_of(const struct aiMaterial *material, enum aiTextureType type
   return source->file.length > 0;
 }
 
-/* glTF's MASK materials, and opacity maps of older formats. Returns 0: opaque, 1: source describes the holes, 2: the same without
- * a texture, factor only. */
+/* glTF's MASK materials, and opacity maps of older formats. Returns 0: opaque, 1: source describes the holes, 2:
+ * the same without a texture, factor only. */
 static int find_source(const struct aiMaterial *material, struct alpha_source *source) {
   memset(source, 0, sizeof *source);
   source->factor = 1;
@@ -47,7 +47,9 @@ static int find_source(const struct aiMaterial *material, struct alpha_source *s
     if (aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &colour) == AI_SUCCESS ||
         aiGetMaterialColor(material, AI_MATKEY_COLOR_DIFFUSE, &colour) == AI_SUCCESS)
       if (isfinite(colour.a)) source->factor = colour.a;
-    return texture_of(material, aiTextureType_BASE_COLOR, source) || texture_of(material, aiTextureType_DIFFUSE, source) ? 1 : 2;
+    return texture_of(material, aiTextureType_BASE_COLOR, source) || texture_of(material, aiTextureType_DIFFUSE, source)
+               ? 1
+               : 2;
   }
   if (!texture_of(material, aiTextureType_OPACITY, source)) return 0;
   source->luminance = 1;
@@ -98,15 +100,13 @@ static void *read_beside(const char *model, const char *name, size_t *size) {
   return read_file(path, size);
 }
 
-static int is_jpeg(const void *bytes, size_t size) {
-  return size > 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0;
-}
+static int is_jpeg(const void *bytes, size_t size) { return size > 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0; }
 
 enum loaded { LOADED, LOADED_OPAQUE, LOADED_NOT };
 
 /* To RGBA, top row first. A JPEG has no alpha channel, so a base colour in one makes no holes and is not an error. */
-static enum loaded decode(const void *bytes, size_t size, const struct alpha_source *source, int *width, int *height, uint8_t **rgba,
-                          char *why, size_t why_size) {
+static enum loaded decode(const void *bytes, size_t size, const struct alpha_source *source, int *width, int *height,
+                          uint8_t **rgba, char *why, size_t why_size) {
   if (is_jpeg(bytes, size) && !source->luminance && source->factor >= source->cutoff) return LOADED_OPAQUE;
   if (is_jpeg(bytes, size)) snprintf(why, why_size, "an alpha map in JPEG is not read; convert it to PNG");
   else if (png_decode(bytes, size, width, height, rgba, why, why_size) == 0) return LOADED;
@@ -129,8 +129,8 @@ static const struct aiTexture *find_embedded(const struct aiScene *model, const 
   return NULL;
 }
 
-static enum loaded load_rgba(const struct importer *importer, const struct alpha_source *source, int *width, int *height, uint8_t **rgba,
-                             char *why, size_t why_size) {
+static enum loaded load_rgba(const struct importer *importer, const struct alpha_source *source, int *width,
+                             int *height, uint8_t **rgba, char *why, size_t why_size) {
   const struct aiTexture *embedded = find_embedded(importer->model, source->file.data);
   if (embedded && embedded->mHeight > 0) { /* texels, not a file: BGRA */
     if (embedded->mWidth > IMAGE_SIZE_MAX || embedded->mHeight > IMAGE_SIZE_MAX) return LOADED_NOT;
@@ -158,11 +158,14 @@ static enum loaded load_rgba(const struct importer *importer, const struct alpha
 }
 
 static enum texture_wrap wrap_of(enum aiTextureMapMode mode) {
-  return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? WRAP_CLAMP : mode == aiTextureMapMode_Mirror ? WRAP_MIRROR : WRAP_REPEAT;
+  return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? WRAP_CLAMP
+         : mode == aiTextureMapMode_Mirror                                ? WRAP_MIRROR
+                                                                          : WRAP_REPEAT;
 }
 
 /* Sends alpha * factor, bottom row first. */
-static void send_texture(struct importer *importer, const struct alpha_source *source, int width, int height, const uint8_t *rgba) {
+static void send_texture(struct importer *importer, const struct alpha_source *source, int width, int height,
+                         const uint8_t *rgba) {
   size_t count = (size_t)width * (size_t)height;
   int any_alpha = 0;
   for (size_t i = 0; i < count && !any_alpha; i++) any_alpha = rgba[4 * i + 3] != 255;
@@ -174,7 +177,10 @@ static void send_texture(struct importer *importer, const struct alpha_source *s
       float value = rgba[4 * ((size_t)y * (size_t)width + (size_t)x) + (size_t)channel] * source->factor;
       alpha[(size_t)(height - 1 - y) * (size_t)width + (size_t)x] = (uint8_t)fminf(fmaxf(value, 0) + 0.5f, 255);
     }
-  struct record r = {.tag = RECORD_TEXTURE, .width = width, .height = height, .wrap_u = wrap_of(source->wrap[0]),
+  struct record r = {.tag = RECORD_TEXTURE,
+                     .width = width,
+                     .height = height,
+                     .wrap_u = wrap_of(source->wrap[0]),
                      .wrap_v = wrap_of(source->wrap[1])};
   send_bytes(importer->fd, &r, sizeof r);
   send_bytes(importer->fd, alpha, count);

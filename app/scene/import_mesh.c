@@ -44,7 +44,8 @@ static const unsigned *usable(struct importer *importer, const struct aiMesh *me
   return i;
 }
 
-/* Vertices that coincide are shared: many formats store three a triangle. A hash table of vertex numbers + 1, open addressing. */
+/* Vertices that coincide are shared: many formats store three a triangle. A hash table of vertex numbers + 1, open
+ * addressing. */
 struct welder {
   uint32_t *slots, mask;
   float *positions, *texcoords;
@@ -101,9 +102,11 @@ static void copy_vertex(struct welder *w, const struct aiMesh *mesh, unsigned i,
 }
 
 int send_mesh(struct importer *importer, const struct aiMesh *mesh, const struct material_alpha *alpha) {
-  if (alpha->invisible || !mesh->mVertices || mesh->mNumFaces > UINT32_MAX / 3 || mesh->mNumVertices > UINT32_MAX / 2) return -1;
+  if (alpha->invisible || !mesh->mVertices || mesh->mNumFaces > UINT32_MAX / 3 || mesh->mNumVertices > UINT32_MAX / 2)
+    return -1;
   int channel = alpha->uv_channel;
-  int textured = alpha->texture >= 0 && channel >= 0 && channel < AI_MAX_NUMBER_OF_TEXTURECOORDS && mesh->mTextureCoords[channel];
+  int textured =
+      alpha->texture >= 0 && channel >= 0 && channel < AI_MAX_NUMBER_OF_TEXTURECOORDS && mesh->mTextureCoords[channel];
   struct welder w;
   welder_init(&w, mesh->mNumVertices, textured);
   uint32_t *indices = malloc((size_t)mesh->mNumFaces * 3 * sizeof *indices + 1), triangles = 0;
@@ -115,7 +118,10 @@ int send_mesh(struct importer *importer, const struct aiMesh *mesh, const struct
     triangles++;
   }
   if (triangles) {
-    struct record r = {.tag = RECORD_MESH, .vertex_count = w.count, .triangle_count = triangles, .texture = textured ? alpha->texture : -1,
+    struct record r = {.tag = RECORD_MESH,
+                       .vertex_count = w.count,
+                       .triangle_count = triangles,
+                       .texture = textured ? alpha->texture : -1,
                        .cutoff = alpha->cutoff};
     send_bytes(importer->fd, &r, sizeof r);
     send_bytes(importer->fd, w.positions, (size_t)w.count * 3 * sizeof(float));

@@ -13,7 +13,8 @@ static int split(struct scene *scene) {
   }
   scene->setup.split = 1;
   if (receivers) return STATUS_OK;
-  return input_error("--split: %s has no ground of its own to receive shadows; add --ground on, or leave --split out", scene->name);
+  return input_error("--split: %s has no ground of its own to receive shadows; add --ground on, or leave --split out",
+                     scene->name);
 }
 
 /* A built-in scene brings its own floor or walls: off takes them away, on adds a ground only where there is none. */
@@ -34,7 +35,8 @@ int scene_load(const struct scene_request *request, struct scene **out) {
   static const char prefix[] = "builtin:";
   int builtin = strncmp(request->name, prefix, sizeof prefix - 1) == 0;
   struct scene *scene = NULL;
-  int status = builtin ? builtin_build(request->name + sizeof prefix - 1, &scene) : import_model(request->name, request->up_is_z, &scene);
+  int status = builtin ? builtin_build(request->name + sizeof prefix - 1, &scene)
+                       : import_model(request->name, request->up_is_z, &scene);
   if (status) return status;
   scene_measure(scene);
   if (!(scene_extent(scene) > 0) || scene_extent(scene) > 1e15) {

@@ -147,8 +147,10 @@ float texture_alpha(const struct texture *texture, float u, float v) {
   int x0 = (int)floorf(x), y0 = (int)floorf(y);
   float fx = x - (float)x0, fy = y - (float)y0, rows[2];
   for (int j = 0; j < 2; j++) {
-    const uint8_t *row = texture->alpha + (size_t)wrapped(y0 + j, texture->height, texture->wrap_v) * (size_t)texture->width;
-    float a = row[wrapped(x0, texture->width, texture->wrap_u)], b = row[wrapped(x0 + 1, texture->width, texture->wrap_u)];
+    const uint8_t *row =
+        texture->alpha + (size_t)wrapped(y0 + j, texture->height, texture->wrap_v) * (size_t)texture->width;
+    float a = row[wrapped(x0, texture->width, texture->wrap_u)],
+          b = row[wrapped(x0 + 1, texture->width, texture->wrap_u)];
     rows[j] = a + (b - a) * fx;
   }
   return (rows[0] + (rows[1] - rows[0]) * fy) / 255;

@@ -23,12 +23,12 @@ struct texture {
 
 /* Triangles in object space. Coordinates are finite and every triangle has an area. */
 struct mesh {
-  float *positions; /* 3 a vertex */
-  float *texcoords; /* 2 a vertex; NULL unless texture >= 0 */
+  float *positions;  /* 3 a vertex */
+  float *texcoords;  /* 2 a vertex; NULL unless texture >= 0 */
   uint32_t *indices; /* 3 a triangle */
   uint32_t vertex_count, triangle_count;
-  int texture;  /* index into scene.textures; -1: opaque */
-  float cutoff; /* texels with alpha >= cutoff block light, the others are holes */
+  int texture;                        /* index into scene.textures; -1: opaque */
+  float cutoff;                       /* texels with alpha >= cutoff block light, the others are holes */
   float bounds_min[3], bounds_max[3]; /* object space */
 };
 
@@ -75,8 +75,9 @@ struct scene {
   struct instance *instances;
   struct texture *textures;
   int mesh_count, instance_count, texture_count;
-  float bounds_min[3], bounds_max[3]; /* scene space, of what casts, or of everything when nothing does: B and H of the standard set-up */
-  uint64_t triangle_count;            /* over instances, the ground included */
+  /* Scene space, of what casts, or of everything when nothing does: B and H of the standard set-up. */
+  float bounds_min[3], bounds_max[3];
+  uint64_t triangle_count; /* over instances, the ground included */
   struct setup setup;
 };
 
@@ -88,29 +89,31 @@ struct scene_request {
   int split;
 };
 
-/* Loads or builds the scene with its ground, its standard set-up (contract: B and H) applied. On failure *out is NULL, one line was
- * printed, and the exit status is returned. Must be called before any thread or GL context exists: the import forks. */
+/* Loads or builds the scene with its ground, its standard set-up (contract: B and H) applied. On failure *out is
+ * NULL, one line was printed, and the exit status is returned. Must be called before any thread or GL context
+ * exists: the import forks. */
 int scene_load(const struct scene_request *request, struct scene **out);
 void scene_free(struct scene **scene); /* clears the handle; NULL and a NULL handle are fine */
 
 /* Largest extent of the bounds: H. */
 double scene_extent(const struct scene *scene);
 
-/* Derives light.direction, u, v and half, checks light and camera, and warns where the light cannot light the scene. Call it after options
- * have changed the set-up. Returns the exit status. */
+/* Derives light.direction, u, v and half, checks light and camera, and warns where the light cannot light the
+ * scene. Call it after options have changed the set-up. Returns the exit status. */
 int setup_finish(struct scene *scene);
 
 /* The light's part of it: direction, u, v and half. */
 int light_finish(struct light *light);
 
-/* The four corners of a rectangle in scene space; of a sun, the four directions towards its corners (unit length not kept). */
+/* The four corners of a rectangle in scene space; of a sun, the four directions towards its corners (unit length
+ * not kept). */
 void light_corners(const struct light *light, double corners[4][3]);
 
 /* Alpha at (u, v) in [0, 1]: bilinear, wrapped as the texture says. A hole is where this is below the mesh's cutoff. */
 float texture_alpha(const struct texture *texture, float u, float v);
 
-/* Adding to a scene under construction (importer, built-ins). Arrays are malloc'ed and taken over; both return the index or -1 when memory ran
- * out (the arrays are then freed). mesh->bounds_* are computed here. */
+/* Adding to a scene under construction (importer, built-ins). Arrays are malloc'ed and taken over; both return the
+ * index or -1 when memory ran out (the arrays are then freed). mesh->bounds_* are computed here. */
 int scene_add_mesh(struct scene *scene, struct mesh *mesh);
 int scene_add_instance(struct scene *scene, int mesh, const float scene_from_object[16], int casts, int receives);
 

@@ -21,9 +21,7 @@ cJSON *json_numbers(const double *values, int count) {
   return array;
 }
 
-static cJSON *json_pair(const int values[2]) {
-  return cJSON_CreateIntArray(values, 2);
-}
+static cJSON *json_pair(const int values[2]) { return cJSON_CreateIntArray(values, 2); }
 
 static void add_light(cJSON *scene, const struct light *light) {
   cJSON *object = cJSON_AddObjectToObject(scene, "light");
@@ -73,12 +71,13 @@ static char *read_text(const char *path, size_t *size) {
     input_error("--setup %s: %s", path, strerror(errno));
     return NULL;
   }
-  if (fstat(fileno(file), &info) != 0 || !S_ISREG(info.st_mode) || info.st_size > SETUP_FILE_MAX)
-    input_error("--setup %s: is not a file of the size that penumbra writes", path);
-  else if (!(text = malloc((size_t)info.st_size + 1)))
-    memory_error();
-  else
-    text[*size = fread(text, 1, (size_t)info.st_size, file)] = 0;
+  int usable = fstat(fileno(file), &info) == 0 && S_ISREG(info.st_mode) && info.st_size <= SETUP_FILE_MAX;
+  if (!usable) input_error("--setup %s: is not a file of the size that penumbra writes", path);
+  if (usable && !(text = malloc((size_t)info.st_size + 1))) memory_error();
+  if (text) {
+    *size = fread(text, 1, (size_t)info.st_size, file);
+    text[*size] = 0;
+  }
   fclose(file);
   return text;
 }
@@ -104,7 +103,8 @@ int setup_read(const char *path, cJSON **out) {
   return input_error("--setup %s: holds no scene with a light or a camera", path);
 }
 
-/* Reading: one struct carries where we are, and whether something was wrong already, so that only the first fault is told. */
+/* Reading: one struct carries where we are, and whether something was wrong already, so that only the first fault
+ * is told. */
 struct reader {
   const char *path;
   int status;
@@ -124,8 +124,7 @@ static void get_numbers(struct reader *r, const cJSON *object, const char *key, 
   const cJSON *array = cJSON_GetObjectItemCaseSensitive(object, key), *item;
   int i = 0;
   double values[6];
-  if (cJSON_IsArray(array) && cJSON_GetArraySize(array) == count)
-    cJSON_ArrayForEach(item, array) {
+  if (cJSON_IsArray(array) && cJSON_GetArraySize(array) == count) cJSON_ArrayForEach(item, array) {
       if (!cJSON_IsNumber(item) || !(fabs(item->valuedouble) <= COORDINATE_MAX)) break;
       values[i++] = item->valuedouble;
     }
@@ -149,7 +148,8 @@ static void get_size(struct reader *r, const cJSON *object, const char *key, int
 }
 
 /* The index of the member's word, or -1 where it is missing. */
-static int get_word(struct reader *r, const cJSON *object, const char *key, const char *const *words, const char *wanted) {
+static int get_word(struct reader *r, const cJSON *object, const char *key, const char *const *words,
+                    const char *wanted) {
   if (!has(object, key)) return -1;
   const char *value = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, key));
   for (int i = 0; value && words[i]; i++)
@@ -158,7 +158,8 @@ static int get_word(struct reader *r, const cJSON *object, const char *key, cons
   return -1;
 }
 
-/* Files that only hold what the contract names have no target and no up: direction and v say the same, and the target is as far as it was. */
+/* Files that only hold what the contract names have no target and no up: direction and v say the same, and the
+ * target is as far as it was. */
 static void get_light(struct reader *r, const cJSON *object, struct light *light) {
   static const char *const types[] = {"rectangle", "sun", NULL};
   double toward[3];
@@ -215,7 +216,8 @@ int setup_request(const char *path, const cJSON *json, struct scene_request *req
 
 int setup_apply_json(const char *path, const cJSON *json, struct setup *setup) {
   struct reader r = {path, STATUS_OK};
-  const cJSON *light = cJSON_GetObjectItemCaseSensitive(json, "light"), *camera = cJSON_GetObjectItemCaseSensitive(json, "camera");
+  const cJSON *light = cJSON_GetObjectItemCaseSensitive(json, "light"),
+              *camera = cJSON_GetObjectItemCaseSensitive(json, "camera");
   if (cJSON_IsObject(light)) get_light(&r, light, &setup->light);
   if (cJSON_IsObject(camera)) get_camera(&r, camera, &setup->camera);
   get_size(&r, json, "size", IMAGE_SIZE_MAX, setup->size);

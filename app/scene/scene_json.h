@@ -15,7 +15,8 @@ int setup_read(const char *path, cJSON **out);
 /* What scene_load must know before the scene exists. */
 int setup_request(const char *path, const cJSON *json, struct scene_request *request);
 
-/* Lays what the object holds over the set-up; members that are missing stay as they are. path is for messages. Exit status. */
+/* Lays what the object holds over the set-up; members that are missing stay as they are. path is for messages. Exit
+ * status. */
 int setup_apply_json(const char *path, const cJSON *json, struct setup *setup);
 
 /* An array of numbers; NULL: out of memory. What is not finite becomes null. */

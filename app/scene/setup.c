@@ -41,7 +41,8 @@ void setup_standard(struct scene *scene) {
 static int camera_check(const struct camera *camera) {
   double view[3], side[3];
   v3_sub(camera->target, camera->position, view);
-  if (!(v3_normalize(view) > 0)) return input_error("--camera-target is the camera's own position: the two must differ");
+  if (!(v3_normalize(view) > 0))
+    return input_error("--camera-target is the camera's own position: the two must differ");
   v3_cross(view, camera->up, side);
   if (!(v3_length(camera->up) > 0)) return input_error("--camera-up is zero: give a direction, such as 0,1,0");
   return STATUS_OK;
@@ -88,7 +89,8 @@ static void warn_about_light(const struct scene *scene) {
     in_front |= v3_dot(d, light->direction) > 0;
   }
   if (!in_front) warning("the whole model lies behind the light, which shines away from it: nothing casts a shadow");
-  else if (inside) warning("the light's centre lies inside the model's bounds: what is behind the light casts no shadow");
+  else if (inside)
+    warning("the light's centre lies inside the model's bounds: what is behind the light casts no shadow");
 }
 
 int setup_finish(struct scene *scene) {

@@ -49,7 +49,8 @@ void shape_quad(struct shape *shape, uint32_t a, uint32_t b, uint32_t c, uint32_
   shape_triangle(shape, a, c, d);
 }
 
-/* The six faces of a hexahedron: corner i has bit 0 for its second u, bit 1 for its second v, bit 2 for its second w, with u x v = w. */
+/* The six faces of a hexahedron: corner i has bit 0 for its second u, bit 1 for its second v, bit 2 for its second
+ * w, with u x v = w. */
 static void hexahedron(struct shape *shape, const uint32_t corner[8]) {
   static const int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
   for (int f = 0; f < 6; f++)
@@ -59,7 +60,8 @@ static void hexahedron(struct shape *shape, const uint32_t corner[8]) {
 void shape_box(struct shape *shape, double x, double z, double y0, double y1, double width, double depth) {
   uint32_t corner[8];
   for (int i = 0; i < 8; i++)
-    corner[i] = shape_vertex(shape, x + (i & 1 ? 0.5 : -0.5) * width, i & 2 ? y1 : y0, z + (i & 4 ? 0.5 : -0.5) * depth);
+    corner[i] =
+        shape_vertex(shape, x + (i & 1 ? 0.5 : -0.5) * width, i & 2 ? y1 : y0, z + (i & 4 ? 0.5 : -0.5) * depth);
   hexahedron(shape, corner);
 }
 
@@ -100,12 +102,14 @@ void shape_cylinder(struct shape *shape, double radius, double y0, double y1, in
 }
 
 void shape_ball(struct shape *shape, const double c[3], double radius, int segments, int rings) {
-  uint32_t top = shape_vertex(shape, c[0], c[1] + radius, c[2]), bottom = shape_vertex(shape, c[0], c[1] - radius, c[2]);
+  uint32_t top = shape_vertex(shape, c[0], c[1] + radius, c[2]),
+           bottom = shape_vertex(shape, c[0], c[1] - radius, c[2]);
   uint32_t first = shape->vertex_count;
   for (int j = 1; j < rings; j++)
     for (int i = 0; i < segments; i++) {
       double theta = pi * j / rings, a = 2 * pi * i / segments;
-      shape_vertex(shape, c[0] + radius * sin(theta) * cos(a), c[1] + radius * cos(theta), c[2] - radius * sin(theta) * sin(a));
+      shape_vertex(shape, c[0] + radius * sin(theta) * cos(a), c[1] + radius * cos(theta),
+                   c[2] - radius * sin(theta) * sin(a));
     }
   for (int i = 0; i < segments; i++) {
     uint32_t a = (uint32_t)i, b = (uint32_t)((i + 1) % segments), n = (uint32_t)segments;
@@ -132,13 +136,26 @@ void shape_texcoords(struct shape *shape, const float *texcoords) {
 }
 
 int shape_finish(struct shape *shape, struct scene *scene, int texture, float cutoff) {
-  struct mesh mesh = {.positions = shape->positions, .texcoords = shape->texcoords, .indices = shape->indices,
-                      .vertex_count = shape->vertex_count, .triangle_count = shape->triangle_count, .texture = texture, .cutoff = cutoff};
+  struct mesh mesh = {.positions = shape->positions,
+                      .texcoords = shape->texcoords,
+                      .indices = shape->indices,
+                      .vertex_count = shape->vertex_count,
+                      .triangle_count = shape->triangle_count,
+                      .texture = texture,
+                      .cutoff = cutoff};
   int failed = shape->failed;
   memset(shape, 0, sizeof *shape);
   if (!failed) return scene_add_mesh(scene, &mesh);
   mesh_free(&mesh);
   return -1;
+}
+
+int shape_place(struct scene *scene, int mesh, const double x[3], const double y[3], const double z[3],
+                const double origin[3]) {
+  const double *columns[4] = {x, y, z, origin};
+  float m[16];
+  for (int i = 0; i < 16; i++) m[i] = i % 4 < 3 ? (float)columns[i / 4][i % 4] : i == 15;
+  return scene_add_instance(scene, mesh, m, 1, 1) < 0 ? -1 : 0;
 }
 
 int shape_add_to(struct shape *shape, struct scene *scene, int casts, int receives) {

@@ -1,5 +1,5 @@
-/* shape.h: triangles under construction. Solids are closed and wound counter-clockwise seen from outside; flat faces are truly flat,
- * their corners exact. Running out of memory is remembered and told once, by shape_add_to. */
+/* shape.h: triangles under construction. Solids are closed and wound counter-clockwise seen from outside; flat
+ * faces are truly flat, their corners exact. Running out of memory is remembered and told once, by shape_add_to. */
 #ifndef PENUMBRA_APP_SCENE_SHAPE_H
 #define PENUMBRA_APP_SCENE_SHAPE_H
 
@@ -31,8 +31,13 @@ void shape_floor(struct shape *shape, double x0, double z0, double x1, double z1
 /* Gives every vertex its texture coordinates (2 floats each, copied). */
 void shape_texcoords(struct shape *shape, const float *texcoords);
 
-/* Moves the triangles into the scene as a mesh, opaque or with a texture, and empties the shape. Returns the mesh or -1: out of memory. */
+/* Moves the triangles into the scene as a mesh, opaque or with a texture, and empties the shape. Returns the mesh
+ * or -1: out of memory. */
 int shape_finish(struct shape *shape, struct scene *scene, int texture, float cutoff);
+
+/* An instance that casts and receives: the columns of its transform. 0, or -1: out of memory. */
+int shape_place(struct scene *scene, int mesh, const double x[3], const double y[3], const double z[3],
+                const double origin[3]);
 
 /* shape_finish, and one instance where it stands. 0, or -1: out of memory. */
 int shape_add_to(struct shape *shape, struct scene *scene, int casts, int receives);

@@ -4,13 +4,9 @@
 
 #include <math.h>
 
-static inline double v3_dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+static inline double v3_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-static inline double v3_length(const double a[3]) {
-  return sqrt(v3_dot(a, a));
-}
+static inline double v3_length(const double a[3]) { return sqrt(v3_dot(a, a)); }
 
 /* out = a - b */
 static inline void v3_sub(const double a[3], const double b[3], double out[3]) {

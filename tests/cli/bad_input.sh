@@ -10,7 +10,10 @@ printf 'v 0 0 0\nv 1 0 0\nl 1 2\n' >lines.obj
 printf 'v nan 0 0\nv inf 0 0\nv 0 1 0\nf 1 2 3\n' >nan.obj
 printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n' >flat.obj
 printf 'solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0' >cut.stl
-printf 'ply\nformat binary_little_endian 1.0\nelement vertex 1000000\nproperty float x\nproperty float y\nproperty float z\nelement face 1000000\nproperty list uchar int vertex_indices\nend_header\nabc' >cut.ply
+{
+  printf 'ply\nformat binary_little_endian 1.0\nelement vertex 1000000\nproperty float x\nproperty float y\n'
+  printf 'property float z\nelement face 1000000\nproperty list uchar int vertex_indices\nend_header\nabc'
+} >cut.ply
 printf '{"asset":{"version":"2.0"},"meshes":[' >cut.gltf
 printf 'OFF\n2000000000 2000000000 0\n0 0 0\n' >huge.off
 mkfifo pipe.obj
@@ -106,6 +109,8 @@ done
 # outputs
 rejected 1 'cannot write none/x.png: No such file' render $s -o none/x.png
 rejected 1 'cannot write none/x.json' render $s --json none/x.json
+rejected 1 'cannot make the directory none/x' render $s --save-dir none/x
+rejected 1 'ok.obj: it is not a directory' render $s --save-dir ok.obj
 mkdir folder.png
 rejected 1 'cannot write folder.png: .*directory' render $s -o folder.png
 run 1 render $s -o x.png --json /dev/full

@@ -30,7 +30,8 @@ rejected() {
   [ "$(wc -l <err)" = 1 ] || fail "not one line: penumbra $* :: $(cat err)"
   grep -qE "^penumbra: .*$pattern" err || fail "no '$pattern': penumbra $* :: $(cat err)"
   [ ! -s out ] || fail "stdout: penumbra $* :: $(head -3 out)"
-  [ "$(echo "$before" | grep -vxE 'out|err')" = "$(echo "$after" | grep -vxE 'out|err')" ] || fail "left files: penumbra $* :: $after"
+  [ "$(echo "$before" | grep -vxE 'out|err')" = "$(echo "$after" | grep -vxE 'out|err')" ] ||
+    fail "left files: penumbra $* :: $after"
 }
 
 finish() {

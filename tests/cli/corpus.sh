@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every file of Debian's assimp-testmodels: a picture, or one clear line; nothing crashes, nothing takes longer than its bound.
+# Every file of Debian's assimp-testmodels: a picture, or one clear line; nothing crashes, nothing outlasts its bound.
 models=/usr/share/assimp/models
 [ -d "$models" ] || exit 77
 . "$(dirname "$0")/common.sh"

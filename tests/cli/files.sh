@@ -46,7 +46,8 @@ rm -rf ./*
 cat >interrupt.py <<'PY'
 import subprocess, sys, time, signal
 p = subprocess.Popen([sys.argv[1], "render", "builtin:balls", "-t", "average:samples=60000", "-o", "z.png"],
-                     stderr=subprocess.PIPE, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+                     stderr=subprocess.PIPE,
+                     preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
 time.sleep(2.5)
 assert p.poll() is None, "ended by itself: %r" % p.returncode
 start = time.time()

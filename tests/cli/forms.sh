@@ -31,8 +31,8 @@ done <techniques
 run 0 list techniques --verbose
 grep -qE '^  samples=1\.\.64 +default 8' out || fail "parameter tables: $(cat out)"
 run 0 list scenes
-[ "$(awk '{print $1}' out | sort | tr '\n' ' ')" = "balls boxes copies cylinder fence leaves room silhouette silhouette-standing square terrain " ] ||
-  fail "scenes: $(cat out)"
+scenes="balls boxes copies cylinder fence leaves room silhouette silhouette-standing square terrain "
+[ "$(awk '{print $1}' out | LC_ALL=C sort | tr '\n' ' ')" = "$scenes" ] || fail "scenes: $(cat out)"
 run 0 list studies
 run 0 info
 grep -q 'devices (--device N)' out || fail "info: $(cat out)"
@@ -54,7 +54,8 @@ run 0 render builtin:copies=2 --size 16x12 --map 8 --frames 1 -t hard -t pcss:sa
 [ -s copies=2-hard.png ] && [ -s copies=2-pcss-samples=2.png ] || fail "names of several: $(ls)"
 
 # The scene block of a result is a set-up: the same bytes again, and further options win.
-run 0 render builtin:boxes $small -o one.exr --json one.json --light sun --light-size 4,2 --fov 30 --split --light-center 1,2,0.1 --fit casters
+run 0 render builtin:boxes $small -o one.exr --json one.json --light sun --light-size 4,2 --fov 30 --split \
+  --light-center 1,2,0.1 --fit casters
 run 0 render builtin:boxes --frames 1 -t hard -o two.exr --setup one.json
 cmp one.exr two.exr || fail "--setup does not bring the picture back"
 run 0 render builtin:boxes --frames 1 -t hard -o three.exr --setup one.json --fov 40
@@ -62,9 +63,15 @@ cmp -s one.exr three.exr && fail "an option does not override --setup"
 run 0 render builtin:boxes $small -o x.png --json -
 grep -q '"schema":' out && ! grep -q 'ms a frame' out || fail "--json -: $(head -3 out)"
 # What the contract alone names is enough: no target, no up.
-printf '{"light":{"type":"rectangle","center":[0,3,0],"direction":[0,-1,0],"u":[1,0,0],"v":[0,0,-1],"size":[1,1]}}' >plain.json
+printf '{"light":{"type":"rectangle","center":[0,3,0],"direction":[0,-1,0],' >plain.json
+printf '"u":[1,0,0],"v":[0,0,-1],"size":[1,1]}}' >>plain.json
 run 0 render builtin:boxes $small -o plain.exr --setup plain.json
 cmp plain.exr d.exr || fail "the contract's own light object means another light"
+
+# Raw buffers beside the picture.
+run 0 render builtin:boxes --size 48x36 --map 32 --frames 1 -t pcss:samples=3 -o x.png --save-dir raw
+[ "$(ls raw | LC_ALL=C sort | tr '\n' ' ')" = "01-pcss-samples=3.exr mask.exr normal.exr position.exr " ] ||
+  fail "buffers: $(ls raw)"
 
 # The same command twice writes the same bytes.
 run 0 render builtin:leaves $small -o l1.png

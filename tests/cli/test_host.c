@@ -1,4 +1,5 @@
-/* The renderer that plays the host: what it hands the library is where and what a ray finds, and its shading is the integral it stands for. */
+/* The renderer that plays the host: what it hands the library is where and what a ray finds, and its shading is the
+ * integral it stands for. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -20,7 +21,8 @@ struct hit {
   int instance;
 };
 
-/* A distance on the triangle's plane, from barycentric coordinates, as it shows across the ray: by the least altitude and the slant. */
+/* A distance on the triangle's plane, from barycentric coordinates, as it shows across the ray: by the least
+ * altitude and the slant. */
 static double across(double barycentric, const double a[3], const double b[3], const double n[3], double cosine) {
   double c[3];
   v3_sub(b, a, c);
@@ -28,8 +30,8 @@ static double across(double barycentric, const double a[3], const double b[3], c
   return fabs(barycentric) * v3_length(n) / longest * cosine;
 }
 
-/* Moeller-Trumbore in double over every triangle: slow, and sharing nothing with the rasteriser. Returns the least angle between the ray and an
- * edge that it passes. */
+/* Moeller-Trumbore in double over every triangle: slow, and sharing nothing with the rasteriser. Returns the least
+ * angle between the ray and an edge that it passes. */
 static double cast(const struct scene *scene, const double origin[3], const double direction[3], struct hit *hit) {
   double margin = 1;
   *hit = (struct hit){.t = INFINITY, .instance = -1};
@@ -88,7 +90,8 @@ static void pixel_ray(const struct scene *scene, int x, int y, double origin[3],
   v3_normalize(direction);
 }
 
-/* Rays that pass an edge this close, in pixels, may fall either way: a rasteriser snaps corners to 1/256 of a pixel or finer. */
+/* Rays that pass an edge this close, in pixels, may fall either way: a rasteriser snaps corners to 1/256 of a pixel
+ * or finer. */
 static const double edge_margin = 1 / 32.0;
 
 static void check_view(const char *name, int least_pixels) {
@@ -114,8 +117,8 @@ static void check_view(const char *name, int least_pixels) {
       }
       const float *n = &view->normal[3 * i], *q = &view->position[3 * i];
       v3_add_scaled(origin, hit.t, direction, p);
-      /* The screen's position is exact to about 1/256 of a pixel times slope in a rasteriser; what counts is that the point lies on the surface:
-       * within the depth buffer's and float's precision. */
+      /* The screen's position is exact to about 1/256 of a pixel times slope in a rasteriser; what counts is that
+       * the point lies on the surface: within the depth buffer's and float's precision. */
       double off = 0, along[3];
       for (int k = 0; k < 3; k++) {
         off += (q[k] - p[k]) * hit.normal[k];
@@ -176,16 +179,19 @@ static void test_mask(void **state) {
   scene_free(&scene);
 }
 
-/* Closed form for a point under the middle of a parallel rectangle (four corner terms), and a midpoint sum for tilted and clipped ones. */
+/* Closed form for a point under the middle of a parallel rectangle (four corner terms), and a midpoint sum for
+ * tilted and clipped ones. */
 static void test_form_factor(void **state) {
   (void)state;
-  struct light light = {.shape = PN_LIGHT_RECTANGLE, .center = {0, 2, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}, .size = {1, 3}};
+  struct light light = {
+      .shape = PN_LIGHT_RECTANGLE, .center = {0, 2, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}, .size = {1, 3}};
   assert_int_equal(light_finish(&light), 0);
   const double p[3] = {0, 0, 0}, n[3] = {0, 1, 0};
   double a = 0.25, b = 0.75, ra = sqrt(1 + a * a), rb = sqrt(1 + b * b);
   double exact = 4 / (2 * pi) * (a / ra * atan(b / ra) + b / rb * atan(a / rb));
   assert_true(fabs(light_form_factor(&light, p, n) - exact) < 1e-12);
-  const double normals[][3] = {{0.6, 0.8, 0}, {0.9, 0.1, 0.3}, {-0.2, 0.05, 0.9}, {0.1, -0.3, -0.9}}, q[3] = {0.3, 0.7, -0.2};
+  const double normals[][3] = {{0.6, 0.8, 0}, {0.9, 0.1, 0.3}, {-0.2, 0.05, 0.9}, {0.1, -0.3, -0.9}},
+               q[3] = {0.3, 0.7, -0.2};
   for (size_t i = 0; i < sizeof normals / sizeof *normals; i++) {
     double m[3], sum = 0;
     memcpy(m, normals[i], sizeof m);
@@ -207,7 +213,8 @@ static void test_shading(void **state) {
   (void)state;
   float position[6] = {0, 0, 0, NAN, NAN, NAN}, normal[6] = {0, 1, 0, NAN, NAN, NAN}, visibility[2] = {1, 1}, rgb[6];
   struct view view = {.width = 2, .height = 1, .position = position, .normal = normal};
-  struct light light = {.shape = PN_LIGHT_RECTANGLE, .center = {0, 3, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}, .size = {1, 1}};
+  struct light light = {
+      .shape = PN_LIGHT_RECTANGLE, .center = {0, 3, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}, .size = {1, 1}};
   assert_int_equal(light_finish(&light), 0);
   shade(&view, &light, visibility, rgb);
   assert_true(rgb[0] > 0.75f && rgb[0] < 0.85f && rgb[1] == rgb[0] && rgb[2] == rgb[0]);

@@ -38,7 +38,9 @@ static void test_exr(void **state) {
   for (int y = 0; y < H; y += rows) {
     exr_chunk_info_t chunk;
     assert_int_equal(exr_read_scanline_chunk_info(context, 0, y, &chunk), 0);
-    assert_int_equal(y ? exr_decoding_update(context, 0, &chunk, &pipeline) : exr_decoding_initialize(context, 0, &chunk, &pipeline), 0);
+    assert_int_equal(y ? exr_decoding_update(context, 0, &chunk, &pipeline)
+                       : exr_decoding_initialize(context, 0, &chunk, &pipeline),
+                     0);
     assert_int_equal(pipeline.channel_count, 3);
     for (int c = 0; c < 3; c++) {
       assert_int_equal(pipeline.channels[c].channel_name[0], "XYZ"[c]);

@@ -43,7 +43,8 @@ static struct scene *load(const char *name, int up_is_z) {
   return scene;
 }
 
-/* One quad in the plane z = 0 with x, y in [0, 1], texture coordinates equal to them in glTF's sense (v downwards), 16-bit indices. */
+/* One quad in the plane z = 0 with x, y in [0, 1], texture coordinates equal to them in glTF's sense (v downwards),
+ * 16-bit indices. */
 static void write_quad_bin(const char *name) {
   const float positions[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, texcoords[8] = {0, 1, 1, 1, 1, 0, 0, 0};
   const uint16_t indices[6] = {0, 1, 2, 0, 2, 3};
@@ -58,17 +59,20 @@ static void write_quad_bin(const char *name) {
 /* nodes: the members of "nodes"; materials: of "materials". */
 static void write_gltf(const char *name, const char *nodes, const char *materials) {
   char text[4096];
-  snprintf(text, sizeof text,
-           "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[%s],"
-           "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1},\"indices\":2,\"material\":0}]}],"
-           "\"materials\":[%s],\"textures\":[{\"source\":0,\"sampler\":0}],\"images\":[{\"uri\":\"the%%20holes.png\"}],"
-           "\"samplers\":[{\"wrapS\":33071,\"wrapT\":33648}],"
-           "\"buffers\":[{\"uri\":\"quad.bin\",\"byteLength\":92}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48},"
-           "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":32},{\"buffer\":0,\"byteOffset\":80,\"byteLength\":12}],"
-           "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]},"
-           "{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"},"
-           "{\"bufferView\":2,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}]}",
-           nodes, materials);
+  snprintf(
+      text, sizeof text,
+      "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[%s],"
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1},\"indices\":2,\"material\":0}]}],"
+      "\"materials\":[%s],\"textures\":[{\"source\":0,\"sampler\":0}],\"images\":[{\"uri\":\"the%%20holes.png\"}],"
+      "\"samplers\":[{\"wrapS\":33071,\"wrapT\":33648}],"
+      "\"buffers\":[{\"uri\":\"quad.bin\",\"byteLength\":92}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,"
+      "\"byteLength\":48},"
+      "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":32},{\"buffer\":0,\"byteOffset\":80,\"byteLength\":12}],"
+      "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":["
+      "1,1,0]},"
+      "{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"},"
+      "{\"bufferView\":2,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}]}",
+      nodes, materials);
   write_text(name, text);
   write_quad_bin("quad.bin");
 }
@@ -114,26 +118,31 @@ static void test_gltf_factor(void **state) {
   (void)state;
   write_holes();
   write_gltf("factor.gltf", "{\"mesh\":0}",
-             "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},\"baseColorFactor\":[1,1,1,0.5]},\"alphaMode\":\"MASK\"}");
+             "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},\"baseColorFactor\":[1,1,1,0.5]},"
+             "\"alphaMode\":\"MASK\"}");
   struct scene *scene = load("factor.gltf", 0);
   assert_true(scene->meshes[0].cutoff == 0.5f);
   assert_true(fabsf(texture_alpha(&scene->textures[0], 0.75f, 0.25f) - 100 / 255.0f) < 1e-6f);
   scene_free(&scene);
-  write_gltf("solid.gltf", "{\"mesh\":0}", "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.6]},\"alphaMode\":\"MASK\"}");
+  write_gltf("solid.gltf", "{\"mesh\":0}",
+             "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.6]},\"alphaMode\":\"MASK\"}");
   scene = load("solid.gltf", 0);
   assert_int_equal(scene->meshes[0].texture, -1);
   assert_null(scene->meshes[0].texcoords);
   scene_free(&scene);
-  write_gltf("nothing.gltf", "{\"mesh\":0}", "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.4]},\"alphaMode\":\"MASK\"}");
+  write_gltf("nothing.gltf", "{\"mesh\":0}",
+             "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.4]},\"alphaMode\":\"MASK\"}");
   struct scene_request request = {.name = "nothing.gltf"};
   assert_int_equal(scene_load(&request, &scene), 2);
 }
 
-/* OPAQUE and BLEND are opaque, whatever the texture holds; a texture that is missing or broken leaves the material opaque. */
+/* OPAQUE and BLEND are opaque, whatever the texture holds; a texture that is missing or broken leaves the material
+ * opaque. */
 static void test_opaque(void **state) {
   (void)state;
   write_holes();
-  write_gltf("blend.gltf", "{\"mesh\":0}", "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},\"alphaMode\":\"BLEND\"}");
+  write_gltf("blend.gltf", "{\"mesh\":0}",
+             "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},\"alphaMode\":\"BLEND\"}");
   struct scene *scene = load("blend.gltf", 0);
   assert_int_equal(scene->meshes[0].texture, -1);
   assert_int_equal(scene->texture_count, 0);
@@ -186,8 +195,8 @@ static void test_nested_transforms(void **state) {
 /* Bad triangles go, good ones stay, and vertices that coincide are one. */
 static void test_dropped(void **state) {
   (void)state;
-  write_text("some.obj",
-             "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv nan 0 0\nv 1e38 0 0\nv 0 0 0\nv 1 1 0\nf 1 2 3\nf 7 8 4\nf 1 2 5\nf 1 2 6\nf 1 1 2\nf 1 2 2\n");
+  write_text("some.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv nan 0 0\nv 1e38 0 0\nv 0 0 0\nv 1 1 0\nf 1 2 3\nf 7 8 "
+                         "4\nf 1 2 5\nf 1 2 6\nf 1 1 2\nf 1 2 2\n");
   struct scene *scene = load("some.obj", 0);
   assert_int_equal(scene->triangle_count, 2);
   assert_int_equal(scene->meshes[0].vertex_count, 4);
@@ -201,16 +210,18 @@ static void test_holes_in_the_shadow(void **state) {
   if (!program) skip();
   char command[1024];
   snprintf(command, sizeof command,
-           "'%s' render lifted.obj --split --size 96x96 --map 512 --frames 1 -t hard -o lifted.png --light-center 0,9,0 --light-target 0,0,0 "
+           "'%s' render lifted.obj --split --size 96x96 --map 512 --frames 1 -t hard -o lifted.png --light-center "
+           "0,9,0 --light-target 0,0,0 "
            "--light-size 0.1 --camera-position 0,0.9,0 --camera-target 0,0,0 --camera-up 0,0,-1 --fov 70 >/dev/null",
            program);
   const uint8_t grey[4] = {0, 255, 255, 255}; /* a hole in the upper left */
   assert_int_equal(png_write("l.png", 2, 2, 1, grey), 0);
   write_text("l.mtl", "newmtl m\nmap_d l.png\nnewmtl n\n");
   /* The quad at y = 1, its picture's top towards -z; a tiny triangle at y = 0 puts the ground there. */
-  write_text("lifted.obj",
-             "mtllib l.mtl\nv -0.5 1 0.5\nv 0.5 1 0.5\nv 0.5 1 -0.5\nv -0.5 1 -0.5\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\n"
-             "f 1/1 2/2 3/3 4/4\nusemtl n\nv 3 0 0\nv 3.01 0 0\nv 3 0 0.01\nf 5 6 7\n");
+  write_text(
+      "lifted.obj",
+      "mtllib l.mtl\nv -0.5 1 0.5\nv 0.5 1 0.5\nv 0.5 1 -0.5\nv -0.5 1 -0.5\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\n"
+      "f 1/1 2/2 3/3 4/4\nusemtl n\nv 3 0 0\nv 3.01 0 0\nv 3 0 0.01\nf 5 6 7\n");
   assert_int_equal(system(command), 0);
   FILE *file = fopen("lifted.png", "rb");
   assert_non_null(file);
@@ -232,9 +243,13 @@ static void test_holes_in_the_shadow(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_gltf_mask),   cmocka_unit_test(test_gltf_factor), cmocka_unit_test(test_opaque),
-      cmocka_unit_test(test_obj_opacity), cmocka_unit_test(test_nested_transforms),
-      cmocka_unit_test(test_dropped),     cmocka_unit_test(test_holes_in_the_shadow),
+      cmocka_unit_test(test_gltf_mask),
+      cmocka_unit_test(test_gltf_factor),
+      cmocka_unit_test(test_opaque),
+      cmocka_unit_test(test_obj_opacity),
+      cmocka_unit_test(test_nested_transforms),
+      cmocka_unit_test(test_dropped),
+      cmocka_unit_test(test_holes_in_the_shadow),
   };
   return cmocka_run_group_tests(tests, enter_folder, leave_folder);
 }

@@ -15,9 +15,7 @@
 
 enum { SIDE = 708, TRIANGLES = 2 * SIDE * SIDE }; /* 1,002,528 */
 
-static float height(int x, int y) {
-  return (float)((x * 7 + y * 13) % 10) * 0.1f;
-}
+static float height(int x, int y) { return (float)((x * 7 + y * 13) % 10) * 0.1f; }
 
 static void put_corner(FILE *file, int x, int y) {
   const float p[3] = {(float)x, height(x, y), (float)y};
@@ -25,10 +23,11 @@ static void put_corner(FILE *file, int x, int y) {
 }
 
 static void write_ply(FILE *file) {
-  fprintf(file,
-          "ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
-          "element face %d\nproperty list uchar int vertex_indices\nend_header\n",
-          (SIDE + 1) * (SIDE + 1), TRIANGLES);
+  fprintf(
+      file,
+      "ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face %d\nproperty list uchar int vertex_indices\nend_header\n",
+      (SIDE + 1) * (SIDE + 1), TRIANGLES);
   for (int i = 0; i < (SIDE + 1) * (SIDE + 1); i++) put_corner(file, i % (SIDE + 1), i / (SIDE + 1));
   for (int i = 0; i < TRIANGLES; i++) {
     int32_t a = i / 2 / SIDE * (SIDE + 1) + i / 2 % SIDE;
@@ -54,10 +53,12 @@ static void write_stl(FILE *file) {
 }
 
 static void write_obj(FILE *file) {
-  for (int i = 0; i < (SIDE + 1) * (SIDE + 1); i++) fprintf(file, "v %d %g %d\n", i % (SIDE + 1), height(i % (SIDE + 1), i / (SIDE + 1)), i / (SIDE + 1));
+  for (int i = 0; i < (SIDE + 1) * (SIDE + 1); i++)
+    fprintf(file, "v %d %g %d\n", i % (SIDE + 1), height(i % (SIDE + 1), i / (SIDE + 1)), i / (SIDE + 1));
   for (int i = 0; i < TRIANGLES; i++) {
     int a = i / 2 / SIDE * (SIDE + 1) + i / 2 % SIDE + 1;
-    fprintf(file, i % 2 ? "f %d %d %d\n" : "f %d %d %d\n", i % 2 ? a + 1 : a, a + SIDE + 1, i % 2 ? a + SIDE + 2 : a + 1);
+    fprintf(file, i % 2 ? "f %d %d %d\n" : "f %d %d %d\n", i % 2 ? a + 1 : a, a + SIDE + 1,
+            i % 2 ? a + SIDE + 2 : a + 1);
   }
 }
 

@@ -1,4 +1,5 @@
-/* Built-in scenes are what they say: closed, wound outwards, flat where they are flat, with the set-ups they exist for. */
+/* Built-in scenes are what they say: closed, wound outwards, flat where they are flat, with the set-ups they exist
+ * for. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -85,7 +86,8 @@ static void test_builtins(void **state) {
     snprintf(name, sizeof name, "builtin:%s", builtins[i].name);
     struct scene *scene = load(name);
     int solid = 1, casters = 0, receivers = 0;
-    for (size_t k = 0; k < sizeof open_casters / sizeof *open_casters; k++) solid &= strcmp(builtins[i].name, open_casters[k]) != 0;
+    for (size_t k = 0; k < sizeof open_casters / sizeof *open_casters; k++)
+      solid &= strcmp(builtins[i].name, open_casters[k]) != 0;
     for (int k = 0; k < scene->instance_count; k++) {
       const struct instance *instance = &scene->instances[k];
       assert_areas(&scene->meshes[instance->mesh]);
@@ -204,7 +206,8 @@ static void test_split_and_ground(void **state) {
   struct scene *scene = NULL;
   struct scene_request request = {.name = "builtin:boxes", .split = 1};
   assert_int_equal(scene_load(&request, &scene), 0);
-  for (int i = 0; i < scene->instance_count; i++) assert_int_not_equal(scene->instances[i].casts, scene->instances[i].receives);
+  for (int i = 0; i < scene->instance_count; i++)
+    assert_int_not_equal(scene->instances[i].casts, scene->instances[i].receives);
   scene_free(&scene);
   request = (struct scene_request){.name = "builtin:boxes", .ground = GROUND_OFF};
   assert_int_equal(scene_load(&request, &scene), 0);
@@ -241,10 +244,14 @@ static void test_texture_alpha(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_builtins),     cmocka_unit_test(test_volumes),
-      cmocka_unit_test(test_silhouette),   cmocka_unit_test(test_room_opens_wide),
-      cmocka_unit_test(test_copies),       cmocka_unit_test(test_standard_setup),
-      cmocka_unit_test(test_sun_half_is_a_tangent), cmocka_unit_test(test_split_and_ground),
+      cmocka_unit_test(test_builtins),
+      cmocka_unit_test(test_volumes),
+      cmocka_unit_test(test_silhouette),
+      cmocka_unit_test(test_room_opens_wide),
+      cmocka_unit_test(test_copies),
+      cmocka_unit_test(test_standard_setup),
+      cmocka_unit_test(test_sun_half_is_a_tangent),
+      cmocka_unit_test(test_split_and_ground),
       cmocka_unit_test(test_texture_alpha),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

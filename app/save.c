@@ -1,0 +1,53 @@
+#define _GNU_SOURCE /* asprintf */
+#include "save.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "label.h"
+#include "message.h"
+
+int save_check(const char *folder) {
+  struct stat info;
+  if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+    return work_error("cannot make the directory %s: %s", folder, strerror(errno));
+  if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))
+    return work_error("cannot write into %s: it is not a directory", folder);
+  if (access(folder, W_OK | X_OK) != 0) return work_error("cannot write into %s: %s", folder, strerror(errno));
+  return STATUS_OK;
+}
+
+int save_planes(const struct save *save, const char *name, const struct exr_plane *planes, int plane_count) {
+  char *path = NULL;
+  if (asprintf(&path, "%s/%s", save->folder, name) < 0) return memory_error();
+  int status = exr_write(path, save->width, save->height, planes, plane_count);
+  if (!status) fprintf(save->people, "%s\n", path);
+  free(path);
+  return status;
+}
+
+int save_vectors(const struct save *save, const char *name, const float *vectors) {
+  const struct exr_plane planes[3] = {{"X", vectors, 3}, {"Y", vectors + 1, 3}, {"Z", vectors + 2, 3}};
+  return save_planes(save, name, planes, 3);
+}
+
+int save_scalars(const struct save *save, const char *name, const float *values) {
+  const struct exr_plane plane = {"Y", values, 1};
+  return save_planes(save, name, &plane, 1);
+}
+
+int save_view(const struct save *save, const struct view *view) {
+  int status = save_vectors(save, "position.exr", view->position);
+  if (!status) status = save_vectors(save, "normal.exr", view->normal);
+  return status ? status : save_scalars(save, "mask.exr", view->mask);
+}
+
+char *save_name(int index, const char *spec) {
+  char *label = file_label(spec), *name = NULL;
+  if (label && asprintf(&name, "%02d-%.200s.exr", index + 1, label) < 0) name = NULL;
+  free(label);
+  return name;
+}

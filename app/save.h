@@ -1,0 +1,30 @@
+/* save.h: raw buffers as EXR files in the folder of --save-dir. */
+#ifndef PENUMBRA_APP_SAVE_H
+#define PENUMBRA_APP_SAVE_H
+
+#include <stdio.h>
+
+#include "host/gbuffer.h"
+#include "image.h"
+
+/* Where buffers go; written paths are printed to people. */
+struct save {
+  const char *folder;
+  FILE *people;
+  int width, height;
+};
+
+/* Makes the folder where it is missing, and checks that it can be written. Exit status. */
+int save_check(const char *folder);
+
+int save_planes(const struct save *save, const char *name, const struct exr_plane *planes, int plane_count);
+int save_vectors(const struct save *save, const char *name, const float *vectors); /* X, Y, Z */
+int save_scalars(const struct save *save, const char *name, const float *values);  /* Y */
+
+/* position.exr, normal.exr and mask.exr. */
+int save_view(const struct save *save, const struct view *view);
+
+/* "NN-LABEL.exr" of the technique with this index; malloc'ed; NULL: out of memory. */
+char *save_name(int index, const char *spec);
+
+#endif
