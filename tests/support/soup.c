@@ -25,13 +25,17 @@ void soup_quad(soup *s, vec corner, vec a, vec b) {
 void soup_patch(soup *s, vec centre, vec a, vec b) { soup_quad(s, sub(centre, add(a, b)), mul(2, a), mul(2, b)); }
 
 void soup_box(soup *s, vec min, vec max) {
-  vec size = sub(max, min), x = v3(size.x, 0, 0), y = v3(0, size.y, 0), z = v3(0, 0, size.z);
-  soup_quad(s, min, y, x);
-  soup_quad(s, min, z, y);
-  soup_quad(s, min, x, z);
-  soup_quad(s, max, mul(-1, x), mul(-1, y));
-  soup_quad(s, max, mul(-1, y), mul(-1, z));
-  soup_quad(s, max, mul(-1, z), mul(-1, x));
+  vec half = mul(0.5, sub(max, min));
+  soup_block(s, mul(0.5, add(min, max)), v3(half.x, 0, 0), v3(0, half.y, 0), v3(0, 0, half.z));
+}
+
+void soup_block(soup *s, vec centre, vec a, vec b, vec c) {
+  const vec axes[3] = {a, b, c};
+  for (int i = 0; i < 3; i++) {
+    vec out = axes[i], right = axes[(i + 1) % 3], up = axes[(i + 2) % 3];
+    soup_patch(s, add(centre, out), right, up);
+    soup_patch(s, sub(centre, out), up, right);
+  }
 }
 
 void soup_free(soup *s) {

@@ -13,6 +13,8 @@ void soup_quad(soup *s, vec corner, vec a, vec b);
 /* A rectangle around a centre, half extents a and b. */
 void soup_patch(soup *s, vec centre, vec a, vec b);
 void soup_box(soup *s, vec min, vec max);
+/* A box anywhere: its centre and three half edges, right-handed. */
+void soup_block(soup *s, vec centre, vec a, vec b, vec c);
 void soup_free(soup *s);
 
 vec corner_of(const triangle *t, int i);
