@@ -1,5 +1,6 @@
-/* A window with a small renderer of its own, into which penumbra brings the soft shadow of an area light. Everything that has
- * to do with penumbra stands between the "penumbra" marks, at most 40 lines in all; the rest is what any renderer has.
+/* A window with a small renderer of its own, into which penumbra brings the soft shadow of an area light. Everything
+ * that has to do with penumbra stands between the "penumbra" marks, at most 40 lines in all; the rest is what any
+ * renderer has.
  *
  *     minimal [--frames N] [--screenshot FILE.ppm]
  *
@@ -50,7 +51,7 @@ static pn_result shadows_open(shadows *s, const renderer *r, const float box[16]
 }
 
 /* After the depth pre-pass: a texture with the visible fraction of the light for each pixel. */
-static GLuint shadows_draw(shadows *s, const renderer *r, const float box[16], const float view[16], const float projection[16]) {
+static GLuint shadows_draw(shadows *s, const renderer *r, const float *box, const float *view, const float *projection) {
   pn_image visibility = {0};
   pn_receiver_desc desc = PN_RECEIVER_DEFAULTS;
   desc.depth_texture = r->depth;
@@ -65,7 +66,8 @@ static GLuint shadows_draw(shadows *s, const renderer *r, const float box[16], c
 }
 /* end */
 
-/* ---- matrices, column-major ----------------------------------------------------------------------------------------------- */
+/* ---- matrices, column-major
+ * ----------------------------------------------------------------------------------------------- */
 
 static void multiply(float out[16], const float a[16], const float b[16]) {
   for (int i = 0; i < 16; i++) {
@@ -98,7 +100,8 @@ static void box_at(float out[16], float angle) {
   memcpy(out, m, sizeof m);
 }
 
-/* ---- the renderer ---------------------------------------------------------------------------------------------------------- */
+/* ---- the renderer
+ * ---------------------------------------------------------------------------------------------------------- */
 
 static const char *const vertex_text =
     "#version 330 core\n"
@@ -207,7 +210,7 @@ static void draw_part(const renderer *r, const float place[16], const float colo
   glDrawArrays(GL_TRIANGLES, first, count);
 }
 
-static void draw_scene(const renderer *r, GLuint framebuffer, GLuint visibility, const float clip[16], const float box[16]) {
+static void draw_scene(const renderer *r, GLuint framebuffer, GLuint visibility, const float *clip, const float *box) {
   static const float still[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   static const float red[3] = {0.7f, 0.25f, 0.2f}, grey[3] = {0.6f, 0.6f, 0.58f};
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
@@ -225,7 +228,8 @@ static void draw_scene(const renderer *r, GLuint framebuffer, GLuint visibility,
   draw_part(r, still, grey, BOX_VERTICES, FLOOR_VERTICES);
 }
 
-/* ---- the window ------------------------------------------------------------------------------------------------------------ */
+/* ---- the window
+ * ------------------------------------------------------------------------------------------------------------ */
 
 static int frame(renderer *r, shadows *s, float angle) {
   float box[16], view[16], projection[16], clip[16];

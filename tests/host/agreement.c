@@ -17,8 +17,8 @@ double local_range(const float *image, int width, int height, int x, int y, int 
   return most - least;
 }
 
-agreement agree(const float *a, int a_width, int a_height, int offset_x, int offset_y, const float *b, int width, int height,
-                const unsigned char *skip) {
+agreement agree(const float *a, int a_width, int a_height, int offset_x, int offset_y, const float *b, int width,
+                int height, const unsigned char *skip) {
   agreement out = {0};
   for (int y = 0; y < height; y++) {
     for (int x = 0; x < width; x++) {
@@ -38,9 +38,7 @@ agreement agree(const float *a, int a_width, int a_height, int offset_x, int off
   return out;
 }
 
-double allowed_changes(double expected) {
-  return expected + 4 * sqrt(expected) + 4;
-}
+double allowed_changes(double expected) { return expected + 4 * sqrt(expected) + 4; }
 
 double view_error(const camera *view, const surfaces *seen) {
   mat4 clip = camera_clip(view);

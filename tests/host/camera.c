@@ -15,13 +15,9 @@ static mat4 perspective_part(double x0, double y0, double x1, double y1) {
                  top * (2 * y0 / CAMERA_HEIGHT - 1), top * (2 * y1 / CAMERA_HEIGHT - 1), near_plane, far_plane);
 }
 
-static mat4 perspective(void) {
-  return perspective_part(0, 0, CAMERA_WIDTH, CAMERA_HEIGHT);
-}
+static mat4 perspective(void) { return perspective_part(0, 0, CAMERA_WIDTH, CAMERA_HEIGHT); }
 
-static void set_projection(camera *self, mat4 m) {
-  to_float(&m, self->projection);
-}
+static void set_projection(camera *self, mat4 m) { to_float(&m, self->projection); }
 
 /* z' = (z + w) / 2 maps -1..1 to 0..1, z' = (w - z) / 2 the other way round. */
 static mat4 zero_to_one(mat4 m, int reversed) {
@@ -97,34 +93,34 @@ camera camera_at(int index) {
   camera out = camera_from(v3(0.4, 2.7, 5.2), v3(0, 0.6, 0));
   mat4 base = perspective();
   switch (index) {
-    case 1: set_format(&out, "perspective-d24", GL_DEPTH_COMPONENT24); break;
-    case 2: set_format(&out, "perspective-d24s8", GL_DEPTH24_STENCIL8); break;
-    case 3: set_format(&out, "perspective-d32fs8", GL_DEPTH32F_STENCIL8); break;
-    case 4: set_format(&out, "perspective-d16", GL_DEPTH_COMPONENT16); break;
-    case 5: set_reversed(&out, "reversed-d32f", zero_to_one(base, 1)); break;
-    case 6: set_reversed(&out, "reversed-infinite-d32f", infinite_reversed(base)); break;
-    case 7:
-      out.name = "zero-to-one-d32f";
-      out.zero_to_one = 1;
-      set_projection(&out, zero_to_one(base, 0));
-      break;
-    case 8:
-      set_format(&out, "reversed-without-clip-control-d24", GL_DEPTH_COMPONENT24);
-      out.reversed = 1;
-      set_projection(&out, negative_depth(base));
-      break;
-    case 9: set_other_rays(&out, "orthographic", orthographic(-2.8, 2.8, -2.1, 2.1, near_plane, 12)); break;
-    case 10: set_off_centre(&out, "off-centre", 96, 64, 160, 120); break;
-    /* A third of a pixel to the right and a quarter down, as temporal antialiasing does it. */
-    case 11:
-      set_other_rays(&out, "jittered", perspective_part(0.33, -0.25, CAMERA_WIDTH + 0.33, CAMERA_HEIGHT - 0.25));
-      break;
-    case 12: set_samples(&out, "multisample-texture", GL_DEPTH_COMPONENT32F, 4, 0); break;
-    case 13: set_samples(&out, "renderbuffer-d24", GL_DEPTH_COMPONENT24, 0, 1); break;
-    case 14: set_samples(&out, "renderbuffer-d24s8", GL_DEPTH24_STENCIL8, 0, 1); break;
-    case 15: set_samples(&out, "multisample-renderbuffer", GL_DEPTH_COMPONENT24, 4, 1); break;
-    case 16: set_split_screen(&out); break;
-    default: break;
+  case 1: set_format(&out, "perspective-d24", GL_DEPTH_COMPONENT24); break;
+  case 2: set_format(&out, "perspective-d24s8", GL_DEPTH24_STENCIL8); break;
+  case 3: set_format(&out, "perspective-d32fs8", GL_DEPTH32F_STENCIL8); break;
+  case 4: set_format(&out, "perspective-d16", GL_DEPTH_COMPONENT16); break;
+  case 5: set_reversed(&out, "reversed-d32f", zero_to_one(base, 1)); break;
+  case 6: set_reversed(&out, "reversed-infinite-d32f", infinite_reversed(base)); break;
+  case 7:
+    out.name = "zero-to-one-d32f";
+    out.zero_to_one = 1;
+    set_projection(&out, zero_to_one(base, 0));
+    break;
+  case 8:
+    set_format(&out, "reversed-without-clip-control-d24", GL_DEPTH_COMPONENT24);
+    out.reversed = 1;
+    set_projection(&out, negative_depth(base));
+    break;
+  case 9: set_other_rays(&out, "orthographic", orthographic(-2.8, 2.8, -2.1, 2.1, near_plane, 12)); break;
+  case 10: set_off_centre(&out, "off-centre", 96, 64, 160, 120); break;
+  /* A third of a pixel to the right and a quarter down, as temporal antialiasing does it. */
+  case 11:
+    set_other_rays(&out, "jittered", perspective_part(0.33, -0.25, CAMERA_WIDTH + 0.33, CAMERA_HEIGHT - 0.25));
+    break;
+  case 12: set_samples(&out, "multisample-texture", GL_DEPTH_COMPONENT32F, 4, 0); break;
+  case 13: set_samples(&out, "renderbuffer-d24", GL_DEPTH_COMPONENT24, 0, 1); break;
+  case 14: set_samples(&out, "renderbuffer-d24s8", GL_DEPTH24_STENCIL8, 0, 1); break;
+  case 15: set_samples(&out, "multisample-renderbuffer", GL_DEPTH_COMPONENT24, 4, 1); break;
+  case 16: set_split_screen(&out); break;
+  default: break;
   }
   return out;
 }
@@ -147,14 +143,15 @@ static double eye_distance(const camera *self, double d) {
   return (p[14] - ndc * p[15]) / (p[10] - ndc * p[11]);
 }
 
-/* Interpolation computes with numbers near 1, unless reversed depth brings them near 0: eight units in the last place. */
+/* Interpolation computes with numbers near 1, unless reversed depth brings them near 0: eight units in the last place.
+ * */
 static double quantum(const camera *self, double d) {
   double interpolation = 8 * ldexp(self->zero_to_one ? fmax(fabs(d), 1e-4) : 1, -24);
   switch (self->format) {
-    case GL_DEPTH_COMPONENT16: return 1.0 / 65535 + interpolation;
-    case GL_DEPTH_COMPONENT24:
-    case GL_DEPTH24_STENCIL8: return 1.0 / 16777215 + interpolation;
-    default: return interpolation;
+  case GL_DEPTH_COMPONENT16: return 1.0 / 65535 + interpolation;
+  case GL_DEPTH_COMPONENT24:
+  case GL_DEPTH24_STENCIL8: return 1.0 / 16777215 + interpolation;
+  default: return interpolation;
   }
 }
 

@@ -1,4 +1,5 @@
-/* Camera views of every kind a host may have: how it projects, how it stores depth, and where in its target it looks. */
+/* Camera views of every kind a host may have: how it projects, how it stores depth, and where in its target it looks.
+ * */
 #ifndef HOST_CAMERA_H
 #define HOST_CAMERA_H
 
@@ -33,8 +34,8 @@ camera camera_from(vec3 eye, vec3 target);
 /* clip from scene, composed in double of the rounded matrices that the library gets too. */
 mat4 camera_clip(const camera *self);
 
-/* How far, in pixels of the view, the point that depth d stands for can be from the true one: half of depth's quantum and of
- * what interpolation rounds away, as a movement along the view ray, over the pixel's size there. */
+/* How far, in pixels of the view, the point that depth d stands for can be from the true one: half of depth's quantum
+ * and of what interpolation rounds away, as a movement along the view ray, over the pixel's size there. */
 double camera_depth_error(const camera *self, double d);
 
 #endif

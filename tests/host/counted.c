@@ -19,7 +19,8 @@ static unsigned char *code;
 int counted_available(void) {
 #if defined(__x86_64__)
   if (!code) {
-    void *memory = mmap(NULL, FUNCTIONS * CODE_BYTES, PROT_READ | PROT_WRITE | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    void *memory =
+        mmap(NULL, FUNCTIONS * CODE_BYTES, PROT_READ | PROT_WRITE | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory != MAP_FAILED) code = memory;
   }
 #endif

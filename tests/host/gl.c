@@ -8,9 +8,7 @@
 gl_table gl;
 static int debug_errors;
 
-static void (*proc(const char *name))(void) {
-  return eglGetProcAddress(name);
-}
+static void (*proc(const char *name))(void) { return eglGetProcAddress(name); }
 
 static void APIENTRY on_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                                 const GLchar *text, const void *user) {

@@ -1,9 +1,11 @@
-/* The client's own GL loader: a table of function pointers, filled by eglGetProcAddress. Nothing of libepoxy is used here,
- * and the table is the client's alone; the library gets a get_proc_address of its own (gl_address). */
+/* The client's own GL loader: a table of function pointers, filled by eglGetProcAddress. Nothing of libepoxy is used
+ * here, and the table is the client's alone; the library gets a get_proc_address of its own (gl_address). */
 #ifndef HOST_GL_H
 #define HOST_GL_H
 
 #include <GL/glcorearb.h>
+
+/* clang-format off */
 
 /* Required of every context of OpenGL 3.3 core. */
 #define HOST_GL_FUNCTIONS(X) \
@@ -60,6 +62,8 @@
   X(GETFLOATI_V, GetFloati_v) X(GETDOUBLEI_V, GetDoublei_v) X(MINSAMPLESHADING, MinSampleShading) \
   X(PATCHPARAMETERI, PatchParameteri) X(PATCHPARAMETERFV, PatchParameterfv)
 
+/* clang-format on */
+
 typedef struct {
 #define X(upper, name) PFNGL##upper##PROC name;
   HOST_GL_FUNCTIONS(X)
@@ -69,8 +73,8 @@ typedef struct {
 
 extern gl_table gl;
 
-/* Fills the table for the current context: 1, or 0 with the missing function's name in *missing. Also listens to the driver's
- * debug messages where it has them. */
+/* Fills the table for the current context: 1, or 0 with the missing function's name in *missing. Also listens to the
+ * driver's debug messages where it has them. */
 int gl_load(const char **missing);
 
 /* Errors since the last call, by debug message and by glGetError; each is printed on stderr. */

@@ -8,8 +8,7 @@
 #include "gl.h"
 
 static EGLDisplay surfaceless_display(void) {
-  PFNEGLGETPLATFORMDISPLAYEXTPROC get =
-      (PFNEGLGETPLATFORMDISPLAYEXTPROC)eglGetProcAddress("eglGetPlatformDisplayEXT");
+  PFNEGLGETPLATFORMDISPLAYEXTPROC get = (PFNEGLGETPLATFORMDISPLAYEXTPROC)eglGetProcAddress("eglGetPlatformDisplayEXT");
   EGLDisplay display = EGL_NO_DISPLAY;
   if (get) display = get(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL)) {
@@ -20,9 +19,15 @@ static EGLDisplay surfaceless_display(void) {
 }
 
 int headless_open(headless *out) {
-  static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3,
-                                      EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                      EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE, EGL_NONE};
+  static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                      3,
+                                      EGL_CONTEXT_MINOR_VERSION,
+                                      3,
+                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                      EGL_CONTEXT_OPENGL_DEBUG,
+                                      EGL_TRUE,
+                                      EGL_NONE};
   EGLDisplay display = surfaceless_display();
   if (display == EGL_NO_DISPLAY || !eglBindAPI(EGL_OPENGL_API)) {
     fprintf(stderr, "host client: no EGL display\n");

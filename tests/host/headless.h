@@ -6,8 +6,8 @@ typedef struct {
   void *display, *context;
 } headless;
 
-/* OpenGL core of at least 3.3 with debug messages, current on this thread, and the table in gl.h filled. 1, or 0 with a line on
- * stderr. */
+/* OpenGL core of at least 3.3 with debug messages, current on this thread, and the table in gl.h filled. 1, or 0 with a
+ * line on stderr. */
 int headless_open(headless *out);
 
 /* An OpenGL ES 3.0 context on the same display, made current; 0 when there is none. */

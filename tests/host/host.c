@@ -139,9 +139,7 @@ pn_result host_cast(host *self, cast_kind kind) {
   return kind == CAST_CALLBACK ? cast_callback(self) : cast_meshes(self, kind);
 }
 
-void host_uncast(host *self) {
-  pn_casters_destroy(&self->casters);
-}
+void host_uncast(host *self) { pn_casters_destroy(&self->casters); }
 
 pn_light_desc host_light_desc(void) {
   return (pn_light_desc){.center = {-1.5f, 3.6f, 2.6f},
@@ -162,11 +160,8 @@ pn_light_desc host_light_desc_other(void) {
 }
 
 pn_light_desc host_sun_desc(void) {
-  return (pn_light_desc){.shape = PN_LIGHT_SUN,
-                         .direction = {-0.5f, -2.0f, -0.7f},
-                         .half_u = 0.05f,
-                         .half_v = 0.05f,
-                         .map_width = 256};
+  return (pn_light_desc){
+      .shape = PN_LIGHT_SUN, .direction = {-0.5f, -2.0f, -0.7f}, .half_u = 0.05f, .half_v = 0.05f, .map_width = 256};
 }
 
 pn_result host_light(host *self, const pn_light_desc *desc, const char *technique, pn_light **out) {

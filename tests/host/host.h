@@ -26,7 +26,8 @@ typedef struct {
   int peeled_passes;         /* that the draw callback has seen */
 } host;
 
-/* GL, the scene and its buffers; 0 when there is no GL here. With a model (which becomes the host's) the scene is that mesh alone. */
+/* GL, the scene and its buffers; 0 when there is no GL here. With a model (which becomes the host's) the scene is that
+ * mesh alone. */
 int host_open(host *self);
 int host_open_model(host *self, const mesh *model);
 void host_close(host *self);
@@ -64,7 +65,8 @@ pn_receiver_desc host_receiver_desc(const camera *view, const depth_target *targ
 pn_result host_view(host *self, const camera *view, camera_view *out);
 void host_view_close(camera_view *self);
 
-/* Maps and visibility; the pair's result, width * height floats from the bottom row, malloced; NULL when anything fails. */
+/* Maps and visibility; the pair's result, width * height floats from the bottom row, malloced; NULL when anything
+ * fails. */
 float *host_visibility(host *self, pn_light *light, const camera_view *view);
 float *host_result(pn_light *light, pn_receiver *receiver);
 

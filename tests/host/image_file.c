@@ -7,8 +7,8 @@
 
 #include <openexr.h>
 
-static exr_result_t read_chunk(exr_context_t file, exr_decode_pipeline_t *pipe, int *started, const char *channel, int top,
-                               int width, int height, int y, float *out) {
+static exr_result_t read_chunk(exr_context_t file, exr_decode_pipeline_t *pipe, int *started, const char *channel,
+                               int top, int width, int height, int y, float *out) {
   exr_chunk_info_t chunk;
   exr_result_t result = exr_read_scanline_chunk_info(file, 0, y + top, &chunk);
   if (result) return result;

@@ -3,42 +3,26 @@
 #include <math.h>
 #include <stddef.h>
 
-vec3 v3(double x, double y, double z) {
-  return (vec3){x, y, z};
-}
+vec3 v3(double x, double y, double z) { return (vec3){x, y, z}; }
 
-vec3 v3_of(const float p[3]) {
-  return v3(p[0], p[1], p[2]);
-}
+vec3 v3_of(const float p[3]) { return v3(p[0], p[1], p[2]); }
 
-vec3 add(vec3 a, vec3 b) {
-  return v3(a.x + b.x, a.y + b.y, a.z + b.z);
-}
+vec3 add(vec3 a, vec3 b) { return v3(a.x + b.x, a.y + b.y, a.z + b.z); }
 
-vec3 sub(vec3 a, vec3 b) {
-  return v3(a.x - b.x, a.y - b.y, a.z - b.z);
-}
+vec3 sub(vec3 a, vec3 b) { return v3(a.x - b.x, a.y - b.y, a.z - b.z); }
 
-vec3 scaled(vec3 a, double s) {
-  return v3(a.x * s, a.y * s, a.z * s);
-}
+vec3 scaled(vec3 a, double s) { return v3(a.x * s, a.y * s, a.z * s); }
 
-double dot(vec3 a, vec3 b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+double dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-vec3 cross(vec3 a, vec3 b) {
-  return v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-}
+vec3 cross(vec3 a, vec3 b) { return v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
 
 vec3 normalized(vec3 a) {
   double length = sqrt(dot(a, a));
   return length > 0 ? scaled(a, 1 / length) : a;
 }
 
-mat4 identity(void) {
-  return (mat4){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
-}
+mat4 identity(void) { return (mat4){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}; }
 
 mat4 multiply(const mat4 *a, const mat4 *b) {
   mat4 out;
@@ -54,8 +38,7 @@ mat4 multiply(const mat4 *a, const mat4 *b) {
 
 mat4 look_at(vec3 eye, vec3 target, vec3 up) {
   vec3 z = normalized(sub(eye, target)), x = normalized(cross(up, z)), y = cross(z, x);
-  return (mat4){
-      {x.x, y.x, z.x, 0, x.y, y.y, z.y, 0, x.z, y.z, z.z, 0, -dot(x, eye), -dot(y, eye), -dot(z, eye), 1}};
+  return (mat4){{x.x, y.x, z.x, 0, x.y, y.y, z.y, 0, x.z, y.z, z.z, 0, -dot(x, eye), -dot(y, eye), -dot(z, eye), 1}};
 }
 
 mat4 translation(double x, double y, double z) {

@@ -5,23 +5,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const vertex_text =
-    "#version 330 core\n"
-    "in vec3 position;\n"
-    "in vec2 texcoord;\n"
-    "uniform mat4 clip_from_scene, scene_from_object;\n"
-    "uniform float wave, phase;\n"
-    "out vec3 scene;\n"
-    "out vec2 uv;\n"
-    "invariant gl_Position;\n"
-    "void main() {\n"
-    "  vec3 p = position;\n"
-    "  p.z += wave * p.x * sin(4.0 * p.x + phase);\n"
-    "  vec4 q = scene_from_object * vec4(p, 1.0);\n"
-    "  scene = q.xyz;\n"
-    "  uv = texcoord;\n"
-    "  gl_Position = clip_from_scene * q;\n"
-    "}\n";
+static const char *const vertex_text = "#version 330 core\n"
+                                       "in vec3 position;\n"
+                                       "in vec2 texcoord;\n"
+                                       "uniform mat4 clip_from_scene, scene_from_object;\n"
+                                       "uniform float wave, phase;\n"
+                                       "out vec3 scene;\n"
+                                       "out vec2 uv;\n"
+                                       "invariant gl_Position;\n"
+                                       "void main() {\n"
+                                       "  vec3 p = position;\n"
+                                       "  p.z += wave * p.x * sin(4.0 * p.x + phase);\n"
+                                       "  vec4 q = scene_from_object * vec4(p, 1.0);\n"
+                                       "  scene = q.xyz;\n"
+                                       "  uv = texcoord;\n"
+                                       "  gl_Position = clip_from_scene * q;\n"
+                                       "}\n";
 
 static const char *const fragment_head =
     "#version 330 core\n"
@@ -31,15 +30,14 @@ static const char *const fragment_head =
     "uniform int has_holes, object;\n"
     "void alpha_test() { if (has_holes != 0 && texture(holes, uv).g < 0.5) discard; }\n";
 
-static const char *const surface_body =
-    "layout(location = 0) out vec4 out_position;\n"
-    "layout(location = 1) out vec4 out_normal;\n"
-    "void main() {\n"
-    "  vec3 n = normalize(cross(dFdx(scene), dFdy(scene)));\n"
-    "  alpha_test();\n"
-    "  out_position = vec4(scene, float(object));\n"
-    "  out_normal = vec4(n, 0.0);\n"
-    "}\n";
+static const char *const surface_body = "layout(location = 0) out vec4 out_position;\n"
+                                        "layout(location = 1) out vec4 out_normal;\n"
+                                        "void main() {\n"
+                                        "  vec3 n = normalize(cross(dFdx(scene), dFdy(scene)));\n"
+                                        "  alpha_test();\n"
+                                        "  out_position = vec4(scene, float(object));\n"
+                                        "  out_normal = vec4(n, 0.0);\n"
+                                        "}\n";
 
 const char *renderer_caster_body(int peel) {
   return peel ? "void main() { pn_peel(); alpha_test(); }\n" : "void main() { alpha_test(); }\n";
@@ -198,11 +196,10 @@ void renderer_close(renderer *self) {
   gl.DeleteProgram(self->surface_program);
 }
 
-static GLint uniform(GLuint program, const char *name) {
-  return gl.GetUniformLocation(program, name);
-}
+static GLint uniform(GLuint program, const char *name) { return gl.GetUniformLocation(program, name); }
 
-void renderer_draw(const renderer *self, const scene *world, GLuint program, const float clip_from_scene[16], int which) {
+void renderer_draw(const renderer *self, const scene *world, GLuint program, const float clip_from_scene[16],
+                   int which) {
   gl.UseProgram(program);
   gl.UniformMatrix4fv(uniform(program, "clip_from_scene"), 1, GL_FALSE, clip_from_scene);
   gl.Uniform1f(uniform(program, "phase"), world->phase);
@@ -224,9 +221,7 @@ void renderer_draw(const renderer *self, const scene *world, GLuint program, con
   gl.UseProgram(0);
 }
 
-static int has_stencil(unsigned format) {
-  return format == GL_DEPTH24_STENCIL8 || format == GL_DEPTH32F_STENCIL8;
-}
+static int has_stencil(unsigned format) { return format == GL_DEPTH24_STENCIL8 || format == GL_DEPTH32F_STENCIL8; }
 
 int target_open(depth_target *out, const camera *view) {
   GLenum point = has_stencil(view->format) ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT;
@@ -308,7 +303,8 @@ static void surfaces_read(surfaces *out, const camera *view) {
   vec3 axis = v3(m.m[2], m.m[6], m.m[10]);
   for (int i = 0; i < out->width * out->height; i++) {
     vec3 p = project(&m, v3_of(out->position + 4 * i), NULL), n = v3_of(out->normal + 3 * i);
-    vec3 eye_n = v3(m.m[0] * n.x + m.m[4] * n.y + m.m[8] * n.z, m.m[1] * n.x + m.m[5] * n.y + m.m[9] * n.z, dot(axis, n));
+    vec3 eye_n =
+        v3(m.m[0] * n.x + m.m[4] * n.y + m.m[8] * n.z, m.m[1] * n.x + m.m[5] * n.y + m.m[9] * n.z, dot(axis, n));
     double towards = ortho ? eye_n.z : -dot(eye_n, p);
     if (towards < 0) {
       for (int k = 0; k < 3; k++) out->normal[3 * i + k] = -out->normal[3 * i + k];

@@ -43,9 +43,7 @@ void mesh_pose(mesh *self, float phase) {
   }
 }
 
-static void put(float *out, double x, double y, double z) {
-  out[0] = (float)x, out[1] = (float)y, out[2] = (float)z;
-}
+static void put(float *out, double x, double y, double z) { out[0] = (float)x, out[1] = (float)y, out[2] = (float)z; }
 
 static void place(mesh *self, vec3 at, double turn) {
   double c = cos(turn), s = sin(turn);

@@ -1,4 +1,5 @@
-/* The client's scene: a floor that receives, and what casts on it: boxes, a torus, and a waving flag with round holes. */
+/* The client's scene: a floor that receives, and what casts on it: boxes, a torus, and a waving flag with round holes.
+ * */
 #ifndef HOST_SCENE_H
 #define HOST_SCENE_H
 
@@ -15,7 +16,7 @@ typedef struct {
   uint32_t *indices;
   float place[16]; /* scene from object */
   int casts, holes;
-  float wave;                       /* height of the wave; 0: rigid */
+  float wave;                         /* height of the wave; 0: rigid */
   float bounds_min[3], bounds_max[3]; /* object space, of the posed vertices */
 } mesh;
 

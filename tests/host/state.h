@@ -1,4 +1,5 @@
-/* All GL state that a host of OpenGL 3.3 to 4.5 core may have, read as a list of named numbers, and set to unusual values. */
+/* All GL state that a host of OpenGL 3.3 to 4.5 core may have, read as a list of named numbers, and set to unusual
+ * values. */
 #ifndef HOST_STATE_H
 #define HOST_STATE_H
 
@@ -20,7 +21,8 @@ void state_read(state_list *out);
 
 /* The objects that the odd state binds. */
 typedef struct {
-  GLuint program, vertex_array, buffers[16], textures[11], samplers[2], framebuffers[2], colors[3], renderbuffer, queries[2];
+  GLuint program, vertex_array, buffers[16], textures[11], samplers[2], framebuffers[2], colors[3], renderbuffer,
+      queries[2];
   GLuint pipeline, feedback;
 } odd_objects;
 
@@ -36,8 +38,8 @@ void odd_unset(const odd_objects *self);
 void odd_set_viewports(void);
 void odd_unset_viewports(void);
 
-/* Prints every entry that differs, at most ten, and returns how many there are. allowed may be NULL, or a second state whose value
- * is fine too. Entries named in except (NULL-terminated, may be NULL) are left out. */
+/* Prints every entry that differs, at most ten, and returns how many there are. allowed may be NULL, or a second state
+ * whose value is fine too. Entries named in except (NULL-terminated, may be NULL) are left out. */
 int state_differences(const char *when, const state_list *before, const state_list *after, const state_list *allowed,
                       const char *const *except);
 

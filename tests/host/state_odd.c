@@ -5,8 +5,16 @@
 
 /* In the order of odd_objects.textures. The last is newer than the floor. */
 static const GLenum texture_targets[] = {
-    GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_1D_ARRAY, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_CUBE_MAP,
-    GL_TEXTURE_RECTANGLE, GL_TEXTURE_BUFFER, GL_TEXTURE_2D_MULTISAMPLE, GL_TEXTURE_2D_MULTISAMPLE_ARRAY,
+    GL_TEXTURE_1D,
+    GL_TEXTURE_2D,
+    GL_TEXTURE_3D,
+    GL_TEXTURE_1D_ARRAY,
+    GL_TEXTURE_2D_ARRAY,
+    GL_TEXTURE_CUBE_MAP,
+    GL_TEXTURE_RECTANGLE,
+    GL_TEXTURE_BUFFER,
+    GL_TEXTURE_2D_MULTISAMPLE,
+    GL_TEXTURE_2D_MULTISAMPLE_ARRAY,
     GL_TEXTURE_CUBE_MAP_ARRAY,
 };
 enum { TEXTURES = sizeof texture_targets / sizeof *texture_targets, ODD_UNITS = 32 };
@@ -17,18 +25,34 @@ typedef struct {
 } buffer_target;
 
 static const buffer_target buffer_targets[] = {
-    {GL_ARRAY_BUFFER, 33}, {GL_UNIFORM_BUFFER, 33}, {GL_PIXEL_PACK_BUFFER, 33}, {GL_PIXEL_UNPACK_BUFFER, 33},
-    {GL_COPY_READ_BUFFER, 33}, {GL_COPY_WRITE_BUFFER, 33}, {GL_TRANSFORM_FEEDBACK_BUFFER, 33}, {GL_TEXTURE_BUFFER, 33},
-    {GL_DRAW_INDIRECT_BUFFER, 40}, {GL_ATOMIC_COUNTER_BUFFER, 42}, {GL_SHADER_STORAGE_BUFFER, 43},
-    {GL_DISPATCH_INDIRECT_BUFFER, 43}, {GL_QUERY_BUFFER, 44},
+    {GL_ARRAY_BUFFER, 33},
+    {GL_UNIFORM_BUFFER, 33},
+    {GL_PIXEL_PACK_BUFFER, 33},
+    {GL_PIXEL_UNPACK_BUFFER, 33},
+    {GL_COPY_READ_BUFFER, 33},
+    {GL_COPY_WRITE_BUFFER, 33},
+    {GL_TRANSFORM_FEEDBACK_BUFFER, 33},
+    {GL_TEXTURE_BUFFER, 33},
+    {GL_DRAW_INDIRECT_BUFFER, 40},
+    {GL_ATOMIC_COUNTER_BUFFER, 42},
+    {GL_SHADER_STORAGE_BUFFER, 43},
+    {GL_DISPATCH_INDIRECT_BUFFER, 43},
+    {GL_QUERY_BUFFER, 44},
 };
 enum { BUFFERS = sizeof buffer_targets / sizeof *buffer_targets, ODD_UNIFORM_RANGES = 24 };
 
 static const GLenum capabilities[] = {
-    GL_COLOR_LOGIC_OP, GL_CULL_FACE, GL_DEPTH_CLAMP, GL_DEPTH_TEST, GL_FRAMEBUFFER_SRGB, GL_LINE_SMOOTH,
-    GL_POLYGON_OFFSET_FILL, GL_POLYGON_OFFSET_LINE, GL_POLYGON_OFFSET_POINT, GL_POLYGON_SMOOTH, GL_PRIMITIVE_RESTART,
-    GL_PROGRAM_POINT_SIZE, GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE, GL_SAMPLE_COVERAGE,
-    GL_SAMPLE_MASK, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_TEXTURE_CUBE_MAP_SEAMLESS, GL_CLIP_DISTANCE0, GL_CLIP_DISTANCE3,
+    GL_COLOR_LOGIC_OP,       GL_CULL_FACE,
+    GL_DEPTH_CLAMP,          GL_DEPTH_TEST,
+    GL_FRAMEBUFFER_SRGB,     GL_LINE_SMOOTH,
+    GL_POLYGON_OFFSET_FILL,  GL_POLYGON_OFFSET_LINE,
+    GL_POLYGON_OFFSET_POINT, GL_POLYGON_SMOOTH,
+    GL_PRIMITIVE_RESTART,    GL_PROGRAM_POINT_SIZE,
+    GL_RASTERIZER_DISCARD,   GL_SAMPLE_ALPHA_TO_COVERAGE,
+    GL_SAMPLE_ALPHA_TO_ONE,  GL_SAMPLE_COVERAGE,
+    GL_SAMPLE_MASK,          GL_SCISSOR_TEST,
+    GL_STENCIL_TEST,         GL_TEXTURE_CUBE_MAP_SEAMLESS,
+    GL_CLIP_DISTANCE0,       GL_CLIP_DISTANCE3,
     GL_CLIP_DISTANCE7,
 };
 static const GLenum on_by_default[] = {GL_DITHER, GL_MULTISAMPLE};
@@ -100,7 +124,8 @@ static void set_bindings(const odd_objects *o, int on, int version) {
     for (int i = 0; i < TEXTURES - (version < 40); i++) gl.BindTexture(texture_targets[i], on ? o->textures[i] : 0);
   }
   gl.ActiveTexture(on ? GL_TEXTURE5 : GL_TEXTURE0);
-  if (version >= 42) gl.BindImageTexture(2, on ? o->colors[0] : 0, 0, GL_FALSE, 0, on ? GL_READ_WRITE : GL_READ_ONLY, GL_RGBA8);
+  if (version >= 42)
+    gl.BindImageTexture(2, on ? o->colors[0] : 0, 0, GL_FALSE, 0, on ? GL_READ_WRITE : GL_READ_ONLY, GL_RGBA8);
   if (version >= 41) gl.BindProgramPipeline(on ? o->pipeline : 0);
   gl.UseProgram(on ? o->program : 0);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, on ? o->framebuffers[0] : 0);
@@ -161,8 +186,7 @@ static void set_output(int on, int version) {
   gl.ClampColor(GL_CLAMP_READ_COLOR, on ? GL_TRUE : GL_FIXED_ONLY);
   gl.BlendColor(on ? 0.5f : 0, on ? 0.6f : 0, on ? 0.7f : 0, on ? 0.8f : 0);
   gl.BlendEquationSeparate(on ? GL_MAX : GL_FUNC_ADD, on ? GL_MIN : GL_FUNC_ADD);
-  gl.BlendFuncSeparate(on ? GL_DST_COLOR : GL_ONE, on ? GL_ONE : GL_ZERO, on ? GL_ZERO : GL_ONE,
-                       on ? GL_ONE : GL_ZERO);
+  gl.BlendFuncSeparate(on ? GL_DST_COLOR : GL_ONE, on ? GL_ONE : GL_ZERO, on ? GL_ZERO : GL_ONE, on ? GL_ONE : GL_ZERO);
   for (GLuint i = 0; i < 8; i++) {
     GLboolean mask = on ? GL_FALSE : GL_TRUE;
     gl.ColorMaski(i, mask, on && i % 2 ? GL_TRUE : mask, mask, mask);
@@ -179,9 +203,9 @@ static void set_output(int on, int version) {
 }
 
 static void set_pixel_store(int on) {
-  static const GLenum lengths[] = {GL_PACK_ROW_LENGTH, GL_PACK_IMAGE_HEIGHT, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS,
-                                   GL_PACK_SKIP_IMAGES, GL_UNPACK_ROW_LENGTH, GL_UNPACK_IMAGE_HEIGHT,
-                                   GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_IMAGES};
+  static const GLenum lengths[] = {
+      GL_PACK_ROW_LENGTH,   GL_PACK_IMAGE_HEIGHT,   GL_PACK_SKIP_ROWS,   GL_PACK_SKIP_PIXELS,   GL_PACK_SKIP_IMAGES,
+      GL_UNPACK_ROW_LENGTH, GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_IMAGES};
   for (size_t i = 0; i < COUNT(lengths); i++) gl.PixelStorei(lengths[i], on ? 3 + (GLint)i : 0);
   gl.PixelStorei(GL_PACK_SWAP_BYTES, on);
   gl.PixelStorei(GL_UNPACK_SWAP_BYTES, on);

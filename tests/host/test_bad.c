@@ -1,5 +1,5 @@
-/* Every bad description is answered by a result and a message id, and leaves the object as it was: after each table the same
- * frame comes out to the bit. */
+/* Every bad description is answered by a result and a message id, and leaves the object as it was: after each table the
+ * same frame comes out to the bit. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,7 +18,7 @@ static camera view;
 static camera_view seen;
 static pn_light *light;
 static float *expected;
-static GLuint color, small_color, flat_depth;
+static GLuint color, small_color, flat_depth, forward_program;
 
 /* One line of a table: what must come back, and what to call with which case number. */
 typedef struct {
@@ -43,8 +43,8 @@ static void check_table(host *h, const bad *table, size_t count) {
     memset(&h->log, 0, sizeof h->log);
     pn_result result = b->call(h, b->k);
     int level = b->result == PN_OK ? 0 : 1, gl_wrong = gl_errors();
-    if (result == b->result && h->log.counts[b->message] == 1 && h->log.errors == level && !gl_wrong && h->log.last[0] &&
-        !strchr(h->log.last, '\n')) {
+    if (result == b->result && h->log.counts[b->message] == 1 && h->log.errors == level && !gl_wrong &&
+        h->log.last[0] && !strchr(h->log.last, '\n')) {
       continue;
     }
     wrong++;
@@ -62,7 +62,8 @@ static void check_table(host *h, const bad *table, size_t count) {
 #define CHECK(h, table) check_table(h, table, sizeof table / sizeof *table)
 #define ARGUMENT PN_ERROR_ARGUMENT
 
-/* ---- meshes ------------------------------------------------------------------------------------------------------------- */
+/* ---- meshes
+ * ------------------------------------------------------------------------------------------------------------- */
 
 static pn_result bad_mesh(host *h, int k) {
   float bent[72];
@@ -71,39 +72,39 @@ static pn_result bad_mesh(host *h, int k) {
   pn_mesh out;
   memcpy(bent, d.positions.data ? d.positions.data : h->world.meshes[SCENE_BOX].posed, sizeof bent);
   switch (k) {
-    case 0: d.positions.count = 0; break;
-    case 1: d.positions.data = NULL; break;
-    case 2: d.positions.buffer = h->draw.meshes[SCENE_BOX].posed; break;
-    case 3: d.positions.stride = 4; break;
-    case 4: d.positions.count = SIZE_MAX / 4; break;
-    case 5: d.index_bytes = 0, d.indices = (pn_span){0}, d.positions.count = 23; break;
-    case 10: d.index_bytes = 3; break;
-    case 11: d.indices.count = 35; break;
-    case 12: d.indices = (pn_span){.data = far_index, .count = 3}; break;
-    case 13: d.indices.data = NULL; break;
-    case 14: d.index_bytes = -4; break;
-    case 20: d.bounds_min[0] = 1, d.bounds_max[0] = -1; break;
-    case 21: d.bounds_min[1] = NAN, d.bounds_max[1] = 1; break;
-    case 30: bent[0] = NAN, d.positions.data = bent; break;
-    case 31: bent[4] = INFINITY, d.positions.data = bent; break;
-    case 40: d.positions.buffer = 99999; break;
-    case 41: d.positions.count = 25; break;
-    case 42: d.positions.offset = 100000; break;
-    case 43: d.indices.buffer = 99999; break;
-    case 44: d.indices.offset = 8; break;
-    case 45: memset(d.bounds_min, 0, sizeof d.bounds_min), memset(d.bounds_max, 0, sizeof d.bounds_max); break;
-    case 46: d.bounds_max[2] = INFINITY; break;
-    case 47: d.positions.offset = SIZE_MAX - 8; break;
-    case 60: d.texcoords = (pn_span){0}; break;
-    case 61: d.texcoords.count--; break;
-    case 62: d.texcoords.stride = 3; break;
-    case 63: d.alpha_channel = 4; break;
-    case 64: d.alpha_channel = -1; break;
-    case 65: d.alpha_cutoff = 1.5f; break;
-    case 66: d.alpha_cutoff = -0.5f; break;
-    case 67: d.alpha_cutoff = NAN; break;
-    case 68: d.alpha_texture = 99999; break;
-    default: break;
+  case 0: d.positions.count = 0; break;
+  case 1: d.positions.data = NULL; break;
+  case 2: d.positions.buffer = h->draw.meshes[SCENE_BOX].posed; break;
+  case 3: d.positions.stride = 4; break;
+  case 4: d.positions.count = SIZE_MAX / 4; break;
+  case 5: d.index_bytes = 0, d.indices = (pn_span){0}, d.positions.count = 23; break;
+  case 10: d.index_bytes = 3; break;
+  case 11: d.indices.count = 35; break;
+  case 12: d.indices = (pn_span){.data = far_index, .count = 3}; break;
+  case 13: d.indices.data = NULL; break;
+  case 14: d.index_bytes = -4; break;
+  case 20: d.bounds_min[0] = 1, d.bounds_max[0] = -1; break;
+  case 21: d.bounds_min[1] = NAN, d.bounds_max[1] = 1; break;
+  case 30: bent[0] = NAN, d.positions.data = bent; break;
+  case 31: bent[4] = INFINITY, d.positions.data = bent; break;
+  case 40: d.positions.buffer = 99999; break;
+  case 41: d.positions.count = 25; break;
+  case 42: d.positions.offset = 100000; break;
+  case 43: d.indices.buffer = 99999; break;
+  case 44: d.indices.offset = 8; break;
+  case 45: memset(d.bounds_min, 0, sizeof d.bounds_min), memset(d.bounds_max, 0, sizeof d.bounds_max); break;
+  case 46: d.bounds_max[2] = INFINITY; break;
+  case 47: d.positions.offset = SIZE_MAX - 8; break;
+  case 60: d.texcoords = (pn_span){0}; break;
+  case 61: d.texcoords.count--; break;
+  case 62: d.texcoords.stride = 3; break;
+  case 63: d.alpha_channel = 4; break;
+  case 64: d.alpha_channel = -1; break;
+  case 65: d.alpha_cutoff = 1.5f; break;
+  case 66: d.alpha_cutoff = -0.5f; break;
+  case 67: d.alpha_cutoff = NAN; break;
+  case 68: d.alpha_texture = 99999; break;
+  default: break;
   }
   pn_result result = pn_mesh_add(h->casters, &d, &out);
   return result == PN_OK ? pn_mesh_remove(h->casters, out) : result;
@@ -147,11 +148,10 @@ static void test_meshes(void **state) {
   CHECK(*state, table);
 }
 
-/* ---- instances and callbacks ----------------------------------------------------------------------------------------------- */
+/* ---- instances and callbacks
+ * ----------------------------------------------------------------------------------------------- */
 
-static void draw_nothing(void *user, const pn_caster_pass *pass) {
-  (void)user, (void)pass;
-}
+static void draw_nothing(void *user, const pn_caster_pass *pass) { (void)user, (void)pass; }
 
 static pn_result bad_instance(host *h, int k) {
   pn_instance out, existing = h->instances[SCENE_BOX];
@@ -160,30 +160,30 @@ static pn_result bad_instance(host *h, int k) {
   float m[16], bounds[6] = {-1, -1, -1, 1, 1, 1};
   memcpy(m, h->world.meshes[SCENE_BOX].place, sizeof m);
   switch (k) {
-    case 0: return pn_instance_add(h->casters, none, m, 0, &out);
-    case 1: return pn_instance_add(h->casters, gone, m, 0, &out);
-    case 2: return pn_mesh_remove(h->casters, gone);
-    case 3: return pn_mesh_moved(h->casters, none, &span, NULL);
-    case 4: return pn_mesh_moved(h->casters, box, &few, NULL);
-    case 5: bounds[0] = 2; return pn_mesh_moved(h->casters, box, &span, bounds);
-    case 10: return pn_instance_move(h->casters, (pn_instance){0}, m);
-    case 11: return pn_instance_remove(h->casters, (pn_instance){4711});
-    case 20: m[5] = NAN; return pn_instance_add(h->casters, box, m, 0, &out);
-    case 21: m[3] = 0.5f; return pn_instance_add(h->casters, box, m, 0, &out);
-    case 22: m[12] = INFINITY; return pn_instance_move(h->casters, existing, m);
-    case 23: m[15] = 0; return pn_instance_move(h->casters, existing, m);
-    case 30: return pn_instance_add(h->casters, box, m, -1, &out);
-    case 31: return pn_instance_add(h->casters, box, m, PN_GROUP_COUNT, &out);
-    case 32: return pn_casters_draw(h->casters, 32, draw_nothing, h, bounds);
-    case 33: return pn_casters_draw(h->casters, -1, draw_nothing, h, bounds);
-    case 40: bounds[0] = 2; return pn_casters_draw(h->casters, 3, draw_nothing, h, bounds);
-    case 41: bounds[5] = NAN; return pn_casters_draw(h->casters, 3, draw_nothing, h, bounds);
-    case 42: bounds[3] = INFINITY; return pn_casters_draw(h->casters, 3, draw_nothing, h, bounds);
-    case 50: return pn_mesh_add(h->casters, NULL, &box);
-    case 51: return pn_instance_add(h->casters, box, NULL, 0, &out);
-    case 52: return pn_instance_move(h->casters, existing, NULL);
-    case 53: return pn_casters_create(h->context, NULL);
-    default: return pn_casters_draw(h->casters, 3, draw_nothing, h, NULL);
+  case 0: return pn_instance_add(h->casters, none, m, 0, &out);
+  case 1: return pn_instance_add(h->casters, gone, m, 0, &out);
+  case 2: return pn_mesh_remove(h->casters, gone);
+  case 3: return pn_mesh_moved(h->casters, none, &span, NULL);
+  case 4: return pn_mesh_moved(h->casters, box, &few, NULL);
+  case 5: bounds[0] = 2; return pn_mesh_moved(h->casters, box, &span, bounds);
+  case 10: return pn_instance_move(h->casters, (pn_instance){0}, m);
+  case 11: return pn_instance_remove(h->casters, (pn_instance){4711});
+  case 20: m[5] = NAN; return pn_instance_add(h->casters, box, m, 0, &out);
+  case 21: m[3] = 0.5f; return pn_instance_add(h->casters, box, m, 0, &out);
+  case 22: m[12] = INFINITY; return pn_instance_move(h->casters, existing, m);
+  case 23: m[15] = 0; return pn_instance_move(h->casters, existing, m);
+  case 30: return pn_instance_add(h->casters, box, m, -1, &out);
+  case 31: return pn_instance_add(h->casters, box, m, PN_GROUP_COUNT, &out);
+  case 32: return pn_casters_draw(h->casters, 32, draw_nothing, h, bounds);
+  case 33: return pn_casters_draw(h->casters, -1, draw_nothing, h, bounds);
+  case 40: bounds[0] = 2; return pn_casters_draw(h->casters, 3, draw_nothing, h, bounds);
+  case 41: bounds[5] = NAN; return pn_casters_draw(h->casters, 3, draw_nothing, h, bounds);
+  case 42: bounds[3] = INFINITY; return pn_casters_draw(h->casters, 3, draw_nothing, h, bounds);
+  case 50: return pn_mesh_add(h->casters, NULL, &box);
+  case 51: return pn_instance_add(h->casters, box, NULL, 0, &out);
+  case 52: return pn_instance_move(h->casters, existing, NULL);
+  case 53: return pn_casters_create(h->context, NULL);
+  default: return pn_casters_draw(h->casters, 3, draw_nothing, h, NULL);
   }
 }
 
@@ -217,43 +217,44 @@ static void test_instances(void **state) {
   CHECK(*state, table);
 }
 
-/* ---- receivers ------------------------------------------------------------------------------------------------------------- */
+/* ---- receivers
+ * ------------------------------------------------------------------------------------------------------------- */
 
 static pn_result bad_receiver(host *h, int k) {
   (void)h;
   pn_receiver_desc d = host_receiver_desc(&view, &seen.target);
   switch (k) {
-    case 0: d.depth_texture = 0; break;
-    case 1: d.use_framebuffer = 1, d.depth_framebuffer = seen.target.framebuffer; break;
-    case 2: d.depth_texture = 99999; break;
-    case 3: d.depth_texture = 0, d.use_framebuffer = 1, d.depth_framebuffer = 99999; break;
-    case 10: d.depth_texture = color; break;
-    case 11: d.depth_texture = 0, d.use_framebuffer = 1, d.depth_framebuffer = flat_depth; break;
-    case 20: d.x = -1; break;
-    case 21: d.width = WIDTH + 1; break;
-    case 22: d.height = -3; break;
-    case 23: d.y = 1; break;
-    case 24: d.height = 0; break;
-    case 25: d.x = INT32_MAX, d.width = INT32_MAX; break;
-    case 30: d.view[0] = NAN; break;
-    case 31: memset(d.projection, 0, sizeof d.projection); break;
-    case 32: d.projection[5] = 0; break;
-    case 33: memset(d.view, 0, sizeof d.view); break;
-    case 34: d.projection[0] = INFINITY; break;
-    case 40: d.normal_texture = small_color; break;
-    case 41: d.normal_texture = color, d.normal_encoding = (pn_normal_encoding)17; break;
-    case 42: d.normal_texture = seen.target.depth; break;
-    case 43: d.normal_texture = 99999; break;
-    case 50: d.mask_texture = small_color; break;
-    case 51: d.mask_texture = 99999; break;
-    case 60: d.scale = 3; break;
-    case 61: d.scale = -1; break;
-    case 62: d.scale = 8; break;
-    case 63: d.format = (pn_format)42; break;
-    case 64: d.format = (pn_format)-1; break;
-    case 70: return pn_receiver_set(seen.receiver, NULL);
-    case 71: return pn_receiver_create(h->context, NULL);
-    default: break;
+  case 0: d.depth_texture = 0; break;
+  case 1: d.use_framebuffer = 1, d.depth_framebuffer = seen.target.framebuffer; break;
+  case 2: d.depth_texture = 99999; break;
+  case 3: d.depth_texture = 0, d.use_framebuffer = 1, d.depth_framebuffer = 99999; break;
+  case 10: d.depth_texture = color; break;
+  case 11: d.depth_texture = 0, d.use_framebuffer = 1, d.depth_framebuffer = flat_depth; break;
+  case 20: d.x = -1; break;
+  case 21: d.width = WIDTH + 1; break;
+  case 22: d.height = -3; break;
+  case 23: d.y = 1; break;
+  case 24: d.height = 0; break;
+  case 25: d.x = INT32_MAX, d.width = INT32_MAX; break;
+  case 30: d.view[0] = NAN; break;
+  case 31: memset(d.projection, 0, sizeof d.projection); break;
+  case 32: d.projection[5] = 0; break;
+  case 33: memset(d.view, 0, sizeof d.view); break;
+  case 34: d.projection[0] = INFINITY; break;
+  case 40: d.normal_texture = small_color; break;
+  case 41: d.normal_texture = color, d.normal_encoding = (pn_normal_encoding)17; break;
+  case 42: d.normal_texture = seen.target.depth; break;
+  case 43: d.normal_texture = 99999; break;
+  case 50: d.mask_texture = small_color; break;
+  case 51: d.mask_texture = 99999; break;
+  case 60: d.scale = 3; break;
+  case 61: d.scale = -1; break;
+  case 62: d.scale = 8; break;
+  case 63: d.format = (pn_format)42; break;
+  case 64: d.format = (pn_format)-1; break;
+  case 70: return pn_receiver_set(seen.receiver, NULL);
+  case 71: return pn_receiver_create(h->context, NULL);
+  default: break;
   }
   return pn_receiver_set(seen.receiver, &d);
 }
@@ -294,38 +295,39 @@ static void test_receivers(void **state) {
   CHECK(*state, table);
 }
 
-/* ---- lights ---------------------------------------------------------------------------------------------------------------- */
+/* ---- lights
+ * ---------------------------------------------------------------------------------------------------------------- */
 
 static void spoil_light(pn_light_desc *d, int k) {
   static const float upside_down[6] = {1, 1, 1, -1, -1, -1}, endless[6] = {-1, -1, -1, 1, INFINITY, 1};
   switch (k) {
-    case 0: d->shape = (pn_light_shape)7; break;
-    case 1: d->shape = (pn_light_shape)-1; break;
-    case 10: memset(d->direction, 0, sizeof d->direction); break;
-    case 11: d->direction[1] = NAN; break;
-    case 12: memcpy(d->axis_u, d->direction, sizeof d->axis_u); break;
-    case 13: d->axis_u[0] = INFINITY; break;
-    case 14: d->center[2] = NAN; break;
-    case 20: d->half_u = 0; break;
-    case 21: d->half_v = -1; break;
-    case 22: d->half_u = NAN; break;
-    case 23: d->half_v = INFINITY; break;
-    case 24: d->shape = PN_LIGHT_SUN, d->half_u = 1.5f * PN_SUN_TANGENT_MAX; break;
-    case 30: d->near_distance = -1; break;
-    case 31: d->range = -0.5f; break;
-    case 32: d->near_distance = 5, d->range = 3; break;
-    case 33: d->near_distance = NAN; break;
-    case 34: d->range = INFINITY; break;
-    case 40: d->texture = color; break;
-    case 50: d->fit = (pn_fit)9; break;
-    case 51: d->fit = PN_FIT_GIVEN, memcpy(d->fit_bounds, upside_down, sizeof upside_down); break;
-    case 52: d->fit = PN_FIT_GIVEN, memcpy(d->fit_bounds, endless, sizeof endless); break;
-    case 53: d->fit = (pn_fit)-1; break;
-    case 60: d->map_width = -1; break;
-    case 61: d->map_width = PN_MAP_SIZE_MAX + 1; break;
-    case 62: d->map_height = -5; break;
-    case 63: d->map_height = 1000000; break;
-    default: break;
+  case 0: d->shape = (pn_light_shape)7; break;
+  case 1: d->shape = (pn_light_shape)-1; break;
+  case 10: memset(d->direction, 0, sizeof d->direction); break;
+  case 11: d->direction[1] = NAN; break;
+  case 12: memcpy(d->axis_u, d->direction, sizeof d->axis_u); break;
+  case 13: d->axis_u[0] = INFINITY; break;
+  case 14: d->center[2] = NAN; break;
+  case 20: d->half_u = 0; break;
+  case 21: d->half_v = -1; break;
+  case 22: d->half_u = NAN; break;
+  case 23: d->half_v = INFINITY; break;
+  case 24: d->shape = PN_LIGHT_SUN, d->half_u = 1.5f * PN_SUN_TANGENT_MAX; break;
+  case 30: d->near_distance = -1; break;
+  case 31: d->range = -0.5f; break;
+  case 32: d->near_distance = 5, d->range = 3; break;
+  case 33: d->near_distance = NAN; break;
+  case 34: d->range = INFINITY; break;
+  case 40: d->texture = color; break;
+  case 50: d->fit = (pn_fit)9; break;
+  case 51: d->fit = PN_FIT_GIVEN, memcpy(d->fit_bounds, upside_down, sizeof upside_down); break;
+  case 52: d->fit = PN_FIT_GIVEN, memcpy(d->fit_bounds, endless, sizeof endless); break;
+  case 53: d->fit = (pn_fit)-1; break;
+  case 60: d->map_width = -1; break;
+  case 61: d->map_width = PN_MAP_SIZE_MAX + 1; break;
+  case 62: d->map_height = -5; break;
+  case 63: d->map_height = 1000000; break;
+  default: break;
   }
 }
 
@@ -396,12 +398,23 @@ static void test_wide_light(void **state) {
   CHECK(*state, table);
 }
 
-/* ---- techniques ------------------------------------------------------------------------------------------------------------ */
+/* ---- techniques
+ * ------------------------------------------------------------------------------------------------------------ */
 
 static pn_result bad_technique(host *h, int k) {
-  static const char *const specs[] = {"pcsss", "", ":", "pcss:bogus=1", "pcss:samples=banana", "pcss:samples=-5",
-                                      "pcss:samples=", "pcss:samples", "pcss:samples=1e99", "pcf:filter=round", "pcss:=3",
-                                      "pcss:samples=4,,", "pcss:samples=nan"};
+  static const char *const specs[] = {"pcsss",
+                                      "",
+                                      ":",
+                                      "pcss:bogus=1",
+                                      "pcss:samples=banana",
+                                      "pcss:samples=-5",
+                                      "pcss:samples=",
+                                      "pcss:samples",
+                                      "pcss:samples=1e99",
+                                      "pcf:filter=round",
+                                      "pcss:=3",
+                                      "pcss:samples=4,,",
+                                      "pcss:samples=nan"};
   (void)h;
   char why[8] = "1234567";
   if (k < 20) {
@@ -426,7 +439,7 @@ static void test_techniques(void **state) {
       {"a banana", ARGUMENT, PN_MESSAGE_PARAMETER_VALUE, bad_technique, 4},
       {"-5 samples", ARGUMENT, PN_MESSAGE_PARAMETER_VALUE, bad_technique, 5},
       {"no value", ARGUMENT, PN_MESSAGE_PARAMETER_VALUE, bad_technique, 6},
-      {"no sign of equality", ARGUMENT, PN_MESSAGE_PARAMETER_VALUE, bad_technique, 7},
+      {"no sign of equality", ARGUMENT, PN_MESSAGE_PARAMETER_UNKNOWN, bad_technique, 7},
       {"1e99 samples", ARGUMENT, PN_MESSAGE_PARAMETER_VALUE, bad_technique, 8},
       {"a round filter", ARGUMENT, PN_MESSAGE_PARAMETER_VALUE, bad_technique, 9},
       {"no name", ARGUMENT, PN_MESSAGE_PARAMETER_UNKNOWN, bad_technique, 10},
@@ -442,7 +455,8 @@ static void test_techniques(void **state) {
   CHECK(*state, table);
 }
 
-/* ---- a frame in the wrong order, and wrong targets --------------------------------------------------------------------------- */
+/* ---- a frame in the wrong order, and wrong targets
+ * --------------------------------------------------------------------------- */
 
 static pn_result bad_order(host *h, int k) {
   pn_light *fresh = NULL;
@@ -458,21 +472,22 @@ static pn_result bad_order(host *h, int k) {
   if (result != PN_OK) return result;
   desc.half_u *= 2;
   switch (k) {
-    case 0: result = pn_maps_update(fresh, h->casters, PN_GROUPS_ALL, NULL, 0); break;
-    case 1: result = pn_visibility(fresh, seen.receiver); break;
-    case 10: result = pn_visibility(fresh, seen.receiver); break;
-    case 11: result = pn_result_image(fresh, seen.receiver, &image); break;
-    case 12: result = pn_light_maps(fresh, &maps); break;
-    case 20: result = pn_visibility(fresh, unset); break;
-    case 21: result = pn_light_set(fresh, &desc) == PN_OK ? pn_visibility(fresh, seen.receiver) : PN_OK; break;
-    case 22:
-      result = pn_light_technique(fresh, "average:samples=4", NULL, 0) == PN_OK ? pn_visibility(fresh, seen.receiver) : PN_OK;
-      break;
-    case 23: result = pn_maps_update(fresh, NULL, PN_GROUPS_ALL, NULL, 0); break;
-    case 24: result = pn_visibility(fresh, NULL); break;
-    case 25: result = pn_maps_update(fresh, h->casters, PN_GROUPS_ALL, NULL, 1); break;
-    case 26: result = pn_light_maps(fresh, NULL); break;
-    default: result = pn_result_image(fresh, seen.receiver, NULL); break;
+  case 0: result = pn_maps_update(fresh, h->casters, PN_GROUPS_ALL, NULL, 0); break;
+  case 1: result = pn_visibility(fresh, seen.receiver); break;
+  case 10: result = pn_visibility(fresh, seen.receiver); break;
+  case 11: result = pn_result_image(fresh, seen.receiver, &image); break;
+  case 12: result = pn_light_maps(fresh, &maps); break;
+  case 20: result = pn_visibility(fresh, unset); break;
+  case 21: result = pn_light_set(fresh, &desc) == PN_OK ? pn_visibility(fresh, seen.receiver) : PN_OK; break;
+  case 22:
+    result =
+        pn_light_technique(fresh, "average:samples=4", NULL, 0) == PN_OK ? pn_visibility(fresh, seen.receiver) : PN_OK;
+    break;
+  case 23: result = pn_maps_update(fresh, NULL, PN_GROUPS_ALL, NULL, 0); break;
+  case 24: result = pn_visibility(fresh, NULL); break;
+  case 25: result = pn_maps_update(fresh, h->casters, PN_GROUPS_ALL, NULL, 1); break;
+  case 26: result = pn_light_maps(fresh, NULL); break;
+  default: result = pn_result_image(fresh, seen.receiver, NULL); break;
   }
   pn_light_destroy(&fresh);
   pn_receiver_destroy(&unset);
@@ -507,12 +522,12 @@ static void test_no_result_yet(void **state) {
 static pn_result bad_target(host *h, int k) {
   (void)h;
   switch (k) {
-    case 0: return pn_visibility_into(light, seen.receiver, 0, 0);
-    case 1: return pn_visibility_into(light, seen.receiver, 99999, 0);
-    case 2: return pn_visibility_into(light, seen.receiver, small_color, 0);
-    case 3: return pn_visibility_into(light, seen.receiver, seen.target.depth, 0);
-    case 4: return pn_visibility_into(light, seen.receiver, color, 1);
-    default: return pn_visibility_into(light, seen.receiver, color, -1);
+  case 0: return pn_visibility_into(light, seen.receiver, 0, 0);
+  case 1: return pn_visibility_into(light, seen.receiver, 99999, 0);
+  case 2: return pn_visibility_into(light, seen.receiver, small_color, 0);
+  case 3: return pn_visibility_into(light, seen.receiver, seen.target.depth, 0);
+  case 4: return pn_visibility_into(light, seen.receiver, color, 1);
+  default: return pn_visibility_into(light, seen.receiver, color, -1);
   }
 }
 
@@ -528,31 +543,32 @@ static void test_targets(void **state) {
   CHECK(*state, table);
 }
 
-/* ---- forward --------------------------------------------------------------------------------------------------------------- */
+/* ---- forward
+ * --------------------------------------------------------------------------------------------------------------- */
 
-static pn_result text_result(const char *text) {
-  return text ? PN_OK : PN_ERROR_ARGUMENT;
-}
+static pn_result text_result(const char *text) { return text ? PN_OK : PN_ERROR_ARGUMENT; }
 
 static pn_result bad_forward(host *h, int k) {
   pn_light *pair[PN_FORWARD_LIGHTS_MAX + 1];
   pn_light *other = NULL;
   pn_slots slots = {0, 0};
-  GLuint program = h->draw.depth_program;
+  GLuint program = forward_program;
   pn_result result = PN_OK;
   for (int i = 0; i <= PN_FORWARD_LIGHTS_MAX; i++) pair[i] = light;
   switch (k) {
-    case 0: return text_result(pn_glsl(h->context, "average", 330, 0));
-    case 1: return text_result(pn_glsl(h->context, "nothing", 330, 0));
-    case 2: return text_result(pn_glsl(h->context, NULL, 330, 0));
-    case 10: return pn_bind(pair, 0, program, &slots);
-    case 11: return pn_bind(pair, PN_FORWARD_LIGHTS_MAX + 1, program, &slots);
-    case 12: slots.first_texture_unit = 100000; return pn_bind(pair, 1, program, &slots);
-    case 13: slots.uniform_binding = -1; return pn_bind(pair, 1, program, &slots);
-    case 14: return pn_bind(pair, 1, 99999, &slots);
-    case 15: return pn_bind(pair, 1, program, NULL);
-    case 16: return pn_bind(NULL, 1, program, &slots);
-    default: break;
+  case 0: return text_result(pn_glsl(h->context, "average", 330, 0));
+  case 1: return text_result(pn_glsl(h->context, "nothing", 330, 0));
+  case 2: return text_result(pn_glsl(h->context, NULL, 330, 0));
+  case 10: return pn_bind(pair, 0, program, &slots);
+  case 11: return pn_bind(pair, PN_FORWARD_LIGHTS_MAX + 1, program, &slots);
+  case 12: slots.first_texture_unit = 100000; return pn_bind(pair, 1, program, &slots);
+  case 13: slots.uniform_binding = -1; return pn_bind(pair, 1, program, &slots);
+  case 14: return pn_bind(pair, 1, 99999, &slots);
+  case 15: return pn_bind(pair, 1, program, NULL);
+  case 16: return pn_bind(NULL, 1, program, &slots);
+  case 18: slots.uniform_binding = 100000; return pn_bind(pair, 1, program, &slots);
+  case 19: return pn_bind(pair, 1, h->draw.depth_program, &slots);
+  default: break;
   }
   pn_light_desc desc = host_light_desc();
   result = host_light(h, &desc, "hard", &other);
@@ -571,6 +587,8 @@ static void test_forward(void **state) {
       {"too many lights", ARGUMENT, PN_MESSAGE_FORWARD, bad_forward, 11},
       {"unit 100000", ARGUMENT, PN_MESSAGE_FORWARD, bad_forward, 12},
       {"binding -1", ARGUMENT, PN_MESSAGE_FORWARD, bad_forward, 13},
+      {"binding 100000", ARGUMENT, PN_MESSAGE_FORWARD, bad_forward, 18},
+      {"a program without the text", ARGUMENT, PN_MESSAGE_FORWARD, bad_forward, 19},
       {"no such program", ARGUMENT, PN_MESSAGE_FORWARD, bad_forward, 14},
       {"no slots", ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, bad_forward, 15},
       {"two techniques", ARGUMENT, PN_MESSAGE_FORWARD, bad_forward, 17},
@@ -581,7 +599,8 @@ static void test_forward(void **state) {
   assert_int_equal(bad_forward(*state, 16), ARGUMENT);
 }
 
-/* ---- context and state scope ------------------------------------------------------------------------------------------------- */
+/* ---- context and state scope
+ * ------------------------------------------------------------------------------------------------- */
 
 static void *no_draw_arrays(void *user, const char *name) {
   return strcmp(name, "glDrawArrays") == 0 ? NULL : gl_address(user, name);
@@ -592,11 +611,11 @@ static pn_result bad_context(host *h, int k) {
   pn_context_desc desc = host_context_desc(h);
   pn_result result;
   switch (k) {
-    case 0: return pn_context_create(&desc, NULL);
-    case 1: desc.get_proc_address = no_draw_arrays; break;
-    case 2: desc.shader_directory = "/nowhere/at/all"; break;
-    case 3: desc.state = (pn_state_mode)9; break;
-    default: desc.state = PN_STATE_SCOPED; break;
+  case 0: return pn_context_create(&desc, NULL);
+  case 1: desc.get_proc_address = no_draw_arrays; break;
+  case 2: desc.shader_directory = "/nowhere/at/all"; break;
+  case 3: desc.state = (pn_state_mode)9; break;
+  default: desc.state = PN_STATE_SCOPED; break;
   }
   result = pn_context_create(&desc, &made);
   if (result == PN_OK && k == 10) result = pn_state_end(made);
@@ -703,11 +722,15 @@ static int setup(void **state) {
   color = make_texture(GL_RGBA8, WIDTH, HEIGHT);
   small_color = make_texture(GL_RGBA8, WIDTH / 2, HEIGHT);
   flat_depth = make_framebuffer(color, 0);
-  return expected ? gl_errors() : -1;
+  forward_program =
+      renderer_program(pn_glsl(h->context, "pcss", 330, 0),
+                       "out vec4 c;\nvoid main() { c = vec4(pn_visibility(0, scene, vec3(0.0, 1.0, 0.0))); }\n");
+  return expected && forward_program ? gl_errors() : -1;
 }
 
 static int teardown(void **state) {
   free(expected);
+  gl.DeleteProgram(forward_program);
   host_view_close(&seen);
   gl.DeleteFramebuffers(1, &flat_depth);
   gl.DeleteTextures(1, &color);
@@ -718,9 +741,9 @@ static int teardown(void **state) {
 int main(void) {
 #define TEST(f) cmocka_unit_test_setup_teardown(f, afresh, host_check)
   const struct CMUnitTest tests[] = {
-      TEST(test_meshes),  TEST(test_instances), TEST(test_receivers), TEST(test_lights),  TEST(test_wide_light),
-      TEST(test_techniques), TEST(test_order),  TEST(test_no_result_yet), TEST(test_targets), TEST(test_forward),
-      TEST(test_context), TEST(test_version),   TEST(test_null_objects), TEST(test_names),
+      TEST(test_meshes),     TEST(test_instances), TEST(test_receivers),     TEST(test_lights),  TEST(test_wide_light),
+      TEST(test_techniques), TEST(test_order),     TEST(test_no_result_yet), TEST(test_targets), TEST(test_forward),
+      TEST(test_context),    TEST(test_version),   TEST(test_null_objects),  TEST(test_names),
   };
   return cmocka_run_group_tests_name("bad", tests, setup, teardown);
 }

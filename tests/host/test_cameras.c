@@ -1,5 +1,5 @@
-/* The same scene through every kind of camera and depth buffer. Each is held against rays (hard: 0 or 1 exactly, flat lit faces
- * exactly 1) and against the baseline's picture. */
+/* The same scene through every kind of camera and depth buffer. Each is held against rays (hard: 0 or 1 exactly, flat
+ * lit faces exactly 1) and against the baseline's picture. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -47,8 +47,8 @@ static void check_hard(const camera *view, const surfaces *seen, const float *im
       known++;
       if (image[i] == (truth == TRUTH_BLOCKED ? 0 : 1)) continue;
       if (wrong++ < 8) {
-        fprintf(stderr, "%s: pixel %d,%d of %s: %g, rays say %d\n", view->name, x, y,
-                h.world.meshes[(int)p[3]].name, image[i], truth);
+        fprintf(stderr, "%s: pixel %d,%d of %s: %g, rays say %d\n", view->name, x, y, h.world.meshes[(int)p[3]].name,
+                image[i], truth);
       }
     }
   }
@@ -76,13 +76,15 @@ static void check_lit(const camera *view, const surfaces *seen, const float *ima
 }
 
 /* The same rays: changes are bounded as agreement.h derives it, with the errors of both views. */
-static void check_same_rays(const camera *view, const surfaces *seen, const float *hard_image, const float *soft_image) {
+static void check_same_rays(const camera *view, const surfaces *seen, const float *hard_image,
+                            const float *soft_image) {
   camera base = camera_at(0);
   double delta = view_error(view, seen) + view_error(&base, &base_seen);
   int w = seen->width, height = seen->height;
   unsigned char *skip = calloc((size_t)w * (size_t)height, 1);
   assert_non_null(skip);
-  for (int i = 0; i < w * height; i++) skip[i] = seen->position[4 * i + 3] >= 0 && !truth_plane_known(seen, i % w, i / w);
+  for (int i = 0; i < w * height; i++)
+    skip[i] = seen->position[4 * i + 3] >= 0 && !truth_plane_known(seen, i % w, i / w);
   agreement a = agree(base_hard, CAMERA_WIDTH, CAMERA_HEIGHT, view->crop_x, view->crop_y, hard_image, w, height, skip);
   agreement b = agree(base_soft, CAMERA_WIDTH, CAMERA_HEIGHT, view->crop_x, view->crop_y, soft_image, w, height, skip);
   free(skip);
@@ -96,8 +98,8 @@ static void check_same_rays(const camera *view, const surfaces *seen, const floa
   assert_true(b.worst <= 16 * sample);
 }
 
-/* Other rays: what is seen at a point lies between what the baseline sees at the pixels around that point, give or take two
- * samples. Where the baseline does not see the point's face all around, nothing is compared. */
+/* Other rays: what is seen at a point lies between what the baseline sees at the pixels around that point, give or take
+ * two samples. Where the baseline does not see the point's face all around, nothing is compared. */
 static void check_other_rays(const camera *view, const surfaces *seen, const float *image) {
   camera base = camera_at(0);
   mat4 clip = camera_clip(&base);
@@ -112,7 +114,8 @@ static void check_other_rays(const camera *view, const surfaces *seen, const flo
     for (int k = 0; same && k < 25; k++) {
       int j = (y + k / 5 - 2) * CAMERA_WIDTH + x + k % 5 - 2;
       const float *q = base_seen.position + 4 * j;
-      same = q[3] == p[3] && fabs(dot(n, sub(v3_of(q), v3_of(p)))) < 1e-3 && dot(n, v3_of(base_seen.normal + 3 * j)) > 0.999;
+      same = q[3] == p[3] && fabs(dot(n, sub(v3_of(q), v3_of(p)))) < 1e-3 &&
+             dot(n, v3_of(base_seen.normal + 3 * j)) > 0.999;
     }
     if (!same) continue;
     compared++;

@@ -1,5 +1,6 @@
-/* What casts, given in three ways that must give one shadow: meshes in memory, meshes in the host's GL buffers, and a draw
- * callback whose vertex shader deforms and whose fragment shader makes holes. And what changes must change the shadow. */
+/* What casts, given in three ways that must give one shadow: meshes in memory, meshes in the host's GL buffers, and a
+ * draw callback whose vertex shader deforms and whose fragment shader makes holes. And what changes must change the
+ * shadow. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,8 +17,9 @@
 enum { PIXELS = CAMERA_WIDTH * CAMERA_HEIGHT };
 
 /* Every technique that casts from a draw callback, cheap enough to be drawn often. */
-static const char *const techniques[] = {"hard", "pcf", "pcf:filter=bicubic", "pcss", "average:samples=16", "ssm",
-                                         "backprojection", "bitmask:maps=layers", "bitmask"};
+static const char *const techniques[] = {
+    "hard",   "pcf", "pcf:filter=bicubic", "pcss", "average:samples=16", "ssm", "backprojection", "bitmask:maps=layers",
+    "bitmask"};
 
 static int usable(const char *spec) {
   const pn_technique *technique = NULL;
@@ -25,7 +27,8 @@ static int usable(const char *spec) {
 }
 
 static float *shadow(host *h, cast_kind kind, const char *technique, const camera_view *v) {
-  /* The bounds are given, so that all three ways have the same map: casters' vertices may be fitted more tightly than a box. */
+  /* The bounds are given, so that all three ways have the same map: casters' vertices may be fitted more tightly than a
+   * box. */
   pn_light_desc desc = host_light_desc();
   pn_light *light = NULL;
   desc.fit = PN_FIT_GIVEN;
@@ -39,8 +42,9 @@ static float *shadow(host *h, cast_kind kind, const char *technique, const camer
   return image;
 }
 
-/* The callback's vertices are transformed by another shader, so they differ by rounding: a unit or two in the last place of
- * coordinates below 4, against a map texel of about 1/100, and the snapping to the rasteriser's grid of 1/256 texel. */
+/* The callback's vertices are transformed by another shader, so they differ by rounding: a unit or two in the last
+ * place of coordinates below 4, against a map texel of about 1/100, and the snapping to the rasteriser's grid of 1/256
+ * texel. */
 static const double texel_share = 2.0 / 256;
 
 static void test_three_ways(void **state) {
@@ -57,7 +61,8 @@ static void test_three_ways(void **state) {
     save_picture(name, memory, CAMERA_WIDTH, CAMERA_HEIGHT);
     assert_memory_equal(memory, buffers, PIXELS * sizeof *memory);
     agreement a = agree(memory, CAMERA_WIDTH, CAMERA_HEIGHT, 0, 0, callback, CAMERA_WIDTH, CAMERA_HEIGHT, NULL);
-    printf("%s: callback differs in %d pixels, mean %.2g, worst %.2g\n", techniques[i], a.differing, a.sum / PIXELS, a.worst);
+    printf("%s: callback differs in %d pixels, mean %.2g, worst %.2g\n", techniques[i], a.differing, a.sum / PIXELS,
+           a.worst);
     assert_true(a.range > 100); /* there is a shadow at all */
     /* A texel that flips is seen by as many pixels as it covers: about four here. */
     assert_true(a.sum <= 4 * allowed_changes(a.range * texel_share));
@@ -94,8 +99,9 @@ static void test_peel_text(void **state) {
   assert_true(pn_glsl(h->context, "caster", 330, 0) == text);
 }
 
-/* Light passes through the holes: with the alpha test the flag's shadow loses the holes' share of its area. The holes are disks
- * of radius 0.3 in cells of side 1: 0.09 pi = 28 % of the flag, 26 to 31 % after rounding to 16 x 21 texels a cell. */
+/* Light passes through the holes: with the alpha test the flag's shadow loses the holes' share of its area. The holes
+ * are disks of radius 0.3 in cells of side 1: 0.09 pi = 28 % of the flag, 26 to 31 % after rounding to 16 x 21 texels a
+ * cell. */
 static void test_holes(void **state) {
   host *h = *state;
   camera view = camera_at(0);
@@ -136,7 +142,8 @@ static void test_holes(void **state) {
   assert_true(share > 0.22 && share < 0.34);
 }
 
-/* Another phase of the wave, written into the host's buffer: the shadow is that of a mesh that was posed so from the beginning. */
+/* Another phase of the wave, written into the host's buffer: the shadow is that of a mesh that was posed so from the
+ * beginning. */
 static void test_deforming(void **state) {
   host *h = *state;
   camera view = camera_at(0);
@@ -241,9 +248,12 @@ static void test_instances(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test_teardown(test_three_ways, host_check), cmocka_unit_test_teardown(test_peeling, host_check),
-      cmocka_unit_test_teardown(test_peel_text, host_check),  cmocka_unit_test_teardown(test_holes, host_check),
-      cmocka_unit_test_teardown(test_deforming, host_check),  cmocka_unit_test_teardown(test_deforming_memory, host_check),
+      cmocka_unit_test_teardown(test_three_ways, host_check),
+      cmocka_unit_test_teardown(test_peeling, host_check),
+      cmocka_unit_test_teardown(test_peel_text, host_check),
+      cmocka_unit_test_teardown(test_holes, host_check),
+      cmocka_unit_test_teardown(test_deforming, host_check),
+      cmocka_unit_test_teardown(test_deforming_memory, host_check),
       cmocka_unit_test_teardown(test_instances, host_check),
   };
   return cmocka_run_group_tests_name("casters", tests, host_setup, host_teardown);

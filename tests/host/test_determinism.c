@@ -66,11 +66,12 @@ static shot shoot(host *h, pn_light *light, const camera_view *v, pn_instance mo
 }
 
 static int same_maps(const pn_maps_info *a, const pn_maps_info *b) {
-  return a->s0 == b->s0 && a->t0 == b->t0 && a->s1 == b->s1 && a->t1 == b->t1 && a->w_near == b->w_near && a->w_far == b->w_far;
+  return a->s0 == b->s0 && a->t0 == b->t0 && a->s1 == b->s1 && a->t1 == b->t1 && a->w_near == b->w_near &&
+         a->w_far == b->w_far;
 }
 
-/* The slab moves between the flag and the box, well inside what the others span. What changes lies in its shadow: left and right of
- * that, in the picture, everything stays. */
+/* The slab moves between the flag and the box, well inside what the others span. What changes lies in its shadow: left
+ * and right of that, in the picture, everything stays. */
 static void test_still_caster(void **state) {
   host *h = *state;
   camera view = camera_at(0);
@@ -85,7 +86,8 @@ static void test_still_caster(void **state) {
     shot still = shoot(h, light, &v, h->instances[SCENE_SLAB], -0.3);
     for (int step = 1; step <= 4; step++) {
       shot next = shoot(h, light, &v, h->instances[SCENE_SLAB], -0.3 + 0.0173 * step);
-      /* The box stands at x = 1.2: right of column 200 there is only its shadow, and left of column 100 only the flag's. */
+      /* The box stands at x = 1.2: right of column 200 there is only its shadow, and left of column 100 only the
+       * flag's. */
       assert_true(same_maps(&still.maps, &next.maps));
       int differ = 0;
       for (int p = 0; p < PIXELS; p++) {
@@ -104,7 +106,8 @@ static void test_still_caster(void **state) {
   host_view_close(&v);
 }
 
-/* Even when the mover sets the bounds: a box that rises little by little changes them a few times, not at every step. */
+/* Even when the mover sets the bounds: a box that rises little by little changes them a few times, not at every step.
+ * */
 static void test_bounds_snap(void **state) {
   enum { SMALL_STEPS = 60 };
   host *h = *state;

@@ -1,5 +1,5 @@
-/* Memory that runs out at every possible moment, a limit on GL's memory, and a context that is given up: an error, never a crash, no
- * leak, and when memory is back the frame is the same to the bit. */
+/* Memory that runs out at every possible moment, a limit on GL's memory, and a context that is given up: an error,
+ * never a crash, no leak, and when memory is back the frame is the same to the bit. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -21,7 +21,8 @@ static pn_light *light;
 static pn_receiver *receiver;
 static pn_context_desc desc;
 
-/* ---- an allocator that counts and fails ----------------------------------------------------------------------------------- */
+/* ---- an allocator that counts and fails
+ * ----------------------------------------------------------------------------------- */
 
 static long allocations, failing, live; /* failing: the number of the call that fails, 0: none */
 static int failed;
@@ -42,39 +43,31 @@ static void *allocate(void *user, void *old, size_t bytes) {
   return out;
 }
 
-/* ---- a frame in steps ----------------------------------------------------------------------------------------------------- */
+/* ---- a frame in steps
+ * ----------------------------------------------------------------------------------------------------- */
 
-static pn_result create(void) {
-  return pn_context_create(&desc, &h.context);
-}
+static pn_result create(void) { return pn_context_create(&desc, &h.context); }
 
-static pn_result prepare(void) {
-  return pn_prepare(h.context, "pcss");
-}
+static pn_result prepare(void) { return pn_prepare(h.context, "pcss"); }
 
-static pn_result make_casters(void) {
-  return pn_casters_create(h.context, &h.casters);
-}
+static pn_result make_casters(void) { return pn_casters_create(h.context, &h.casters); }
 
 static pn_result add_mesh(int i, cast_kind kind) {
   pn_mesh_desc mesh_desc = host_mesh_desc(&h, i, kind);
   return pn_mesh_add(h.casters, &mesh_desc, &h.meshes[i]);
 }
 
-static pn_result add_box(void) {
-  return add_mesh(SCENE_BOX, CAST_MEMORY);
-}
+static pn_result add_box(void) { return add_mesh(SCENE_BOX, CAST_MEMORY); }
 
-static pn_result add_flag(void) {
-  return add_mesh(SCENE_FLAG, CAST_BUFFERS);
-}
+static pn_result add_flag(void) { return add_mesh(SCENE_FLAG, CAST_BUFFERS); }
 
 static pn_result place_box(void) {
   return pn_instance_add(h.casters, h.meshes[SCENE_BOX], h.world.meshes[SCENE_BOX].place, 0, &h.instances[SCENE_BOX]);
 }
 
 static pn_result place_flag(void) {
-  return pn_instance_add(h.casters, h.meshes[SCENE_FLAG], h.world.meshes[SCENE_FLAG].place, 0, &h.instances[SCENE_FLAG]);
+  return pn_instance_add(h.casters, h.meshes[SCENE_FLAG], h.world.meshes[SCENE_FLAG].place, 0,
+                         &h.instances[SCENE_FLAG]);
 }
 
 static pn_result move_box(void) {
@@ -83,18 +76,14 @@ static pn_result move_box(void) {
   return pn_mesh_moved(h.casters, h.meshes[SCENE_BOX], &positions, NULL);
 }
 
-static pn_result make_receiver(void) {
-  return pn_receiver_create(h.context, &receiver);
-}
+static pn_result make_receiver(void) { return pn_receiver_create(h.context, &receiver); }
 
 static pn_result set_receiver(void) {
   pn_receiver_desc d = host_receiver_desc(&view, &target);
   return pn_receiver_set(receiver, &d);
 }
 
-static pn_result make_light(void) {
-  return pn_light_create(h.context, &light);
-}
+static pn_result make_light(void) { return pn_light_create(h.context, &light); }
 
 static pn_result set_light(void) {
   pn_light_desc d = host_light_desc();
@@ -103,31 +92,36 @@ static pn_result set_light(void) {
   return pn_light_set(light, &d);
 }
 
-static pn_result choose(void) {
-  return pn_light_technique(light, "pcss:samples=4", NULL, 0);
-}
+static pn_result choose(void) { return pn_light_technique(light, "pcss:samples=4", NULL, 0); }
 
-static pn_result update(void) {
-  return pn_maps_update(light, h.casters, PN_GROUPS_ALL, &receiver, 1);
-}
+static pn_result update(void) { return pn_maps_update(light, h.casters, PN_GROUPS_ALL, &receiver, 1); }
 
-static pn_result see(void) {
-  return pn_visibility(light, receiver);
-}
+static pn_result see(void) { return pn_visibility(light, receiver); }
 
-static pn_result text(void) {
-  return pn_glsl(h.context, "pcss", 330, 0) ? PN_OK : PN_ERROR_OUT_OF_MEMORY;
-}
+static pn_result text(void) { return pn_glsl(h.context, "pcss", 330, 0) ? PN_OK : PN_ERROR_OUT_OF_MEMORY; }
 
 static const struct {
   const char *name;
   pn_result (*call)(void);
 } steps[] = {
-    {"pn_context_create", create}, {"pn_prepare", prepare}, {"pn_casters_create", make_casters}, {"pn_mesh_add", add_box},
-    {"pn_mesh_add, buffers", add_flag}, {"pn_instance_add", place_box}, {"pn_instance_add", place_flag},
-    {"pn_mesh_moved", move_box}, {"pn_receiver_create", make_receiver}, {"pn_receiver_set", set_receiver},
-    {"pn_light_create", make_light}, {"pn_light_set", set_light}, {"pn_light_technique", choose},
-    {"pn_maps_update", update}, {"pn_visibility", see}, {"pn_glsl", text}, {"pn_maps_update", update}, {"pn_visibility", see},
+    {"pn_context_create", create},
+    {"pn_prepare", prepare},
+    {"pn_casters_create", make_casters},
+    {"pn_mesh_add", add_box},
+    {"pn_mesh_add, buffers", add_flag},
+    {"pn_instance_add", place_box},
+    {"pn_instance_add", place_flag},
+    {"pn_mesh_moved", move_box},
+    {"pn_receiver_create", make_receiver},
+    {"pn_receiver_set", set_receiver},
+    {"pn_light_create", make_light},
+    {"pn_light_set", set_light},
+    {"pn_light_technique", choose},
+    {"pn_maps_update", update},
+    {"pn_visibility", see},
+    {"pn_glsl", text},
+    {"pn_maps_update", update},
+    {"pn_visibility", see},
 };
 enum { STEPS = sizeof steps / sizeof *steps };
 

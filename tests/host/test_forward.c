@@ -14,13 +14,12 @@
 
 enum { PIXELS = CAMERA_WIDTH * CAMERA_HEIGHT };
 
-static const char *const body =
-    "out vec4 color;\n"
-    "void main() {\n"
-    "  vec3 n = cross(dFdx(scene), dFdy(scene));\n"
-    "  alpha_test();\n"
-    "  color = vec4(pn_visibility(0, scene, n), pn_visibility(1, scene, n), 0.0, 1.0);\n"
-    "}\n";
+static const char *const body = "out vec4 color;\n"
+                                "void main() {\n"
+                                "  vec3 n = cross(dFdx(scene), dFdy(scene));\n"
+                                "  alpha_test();\n"
+                                "  color = vec4(pn_visibility(0, scene, n), pn_visibility(1, scene, n), 0.0, 1.0);\n"
+                                "}\n";
 
 /* Draws with the program: two lights' visibility in red and green, 1 where nothing is. */
 static float *draw_forward(host *h, const camera *view, GLuint program, pn_light *const lights[2]) {
@@ -108,8 +107,8 @@ static void test_forward(void **state) {
   host_uncast(h);
 }
 
-/* A program drawn after the host changed everything else still finds its maps: pn_bind's bindings stay. The same text compiles
- * with the caster's snippet beside it. */
+/* A program drawn after the host changed everything else still finds its maps: pn_bind's bindings stay. The same text
+ * compiles with the caster's snippet beside it. */
 static void test_texts_together(void **state) {
   host *h = *state;
   const char *parts[2] = {pn_glsl(h->context, "pcss", 330, 0), pn_glsl(h->context, "caster", 330, 0)};

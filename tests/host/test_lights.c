@@ -15,9 +15,7 @@
 
 enum { PIXELS = CAMERA_WIDTH * CAMERA_HEIGHT };
 
-static camera second_camera(void) {
-  return camera_from(v3(-3.2, 1.8, 3.4), v3(0, 0.4, 0));
-}
+static camera second_camera(void) { return camera_from(v3(-3.2, 1.8, 3.4), v3(0, 0.4, 0)); }
 
 /* 2 x 2 results, drawn interleaved and read at the end, are those of a context with one pair only, to the bit. */
 static void test_pairs(void **state) {
@@ -140,8 +138,9 @@ static void test_sun(void **state) {
   host_uncast(h);
 }
 
-/* A slab parallel to a floor, a light's centre straight above: the hard shadow is the slab's rectangle scaled by the distances.
- * The map is given, so a texel's size on the floor is known: pixels further than that from the border are exact. */
+/* A slab parallel to a floor, a light's centre straight above: the hard shadow is the slab's rectangle scaled by the
+ * distances. The map is given, so a texel's size on the floor is known: pixels further than that from the border are
+ * exact. */
 static void test_box_shadow(void **state) {
   host *h = *state;
   enum { LIGHT_HEIGHT = 4 };
@@ -151,7 +150,8 @@ static void test_box_shadow(void **state) {
   mat4 at = translation(0.2, (low + high) / 2, -0.1);
   to_float(&at, slab.place);
   mesh_pose(&slab, 0);
-  pn_light_desc desc = {.center = {0.2f, LIGHT_HEIGHT, -0.1f}, .direction = {0, -1, 0}, .half_u = 0.2f, .half_v = 0.2f, .map_width = 256};
+  pn_light_desc desc = {
+      .center = {0.2f, LIGHT_HEIGHT, -0.1f}, .direction = {0, -1, 0}, .half_u = 0.2f, .half_v = 0.2f, .map_width = 256};
   pn_mesh_desc mesh_desc = {.positions = {.data = slab.posed, .count = (size_t)slab.vertex_count},
                             .indices = {.data = slab.indices, .count = (size_t)slab.index_count},
                             .index_bytes = 4};
@@ -182,7 +182,7 @@ static void test_box_shadow(void **state) {
     double edge = fmax(fabs(p[0] - 0.2) - x, fabs(p[2] + 0.1) - z);
     if (fabs(edge) < texel) continue;
     assert_true(image[i] == (edge < 0 ? 0 : 1));
-    inside += edge < 0, outside += edge > 0;
+    inside += edge<0, outside += edge> 0;
   }
   printf("texel %.3g; %d pixels inside, %d outside\n", texel, inside, outside);
   assert_true(inside > 1000 && outside > 10000);
@@ -196,7 +196,7 @@ static void test_box_shadow(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test_teardown(test_pairs, host_check), cmocka_unit_test_teardown(test_lifetimes, host_check),
+      cmocka_unit_test_teardown(test_pairs, host_check),       cmocka_unit_test_teardown(test_lifetimes, host_check),
       cmocka_unit_test_teardown(test_other_light, host_check), cmocka_unit_test_teardown(test_sun, host_check),
       cmocka_unit_test_teardown(test_box_shadow, host_check),
   };

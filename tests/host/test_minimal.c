@@ -1,5 +1,5 @@
-/* The example: it needs at most 40 lines of penumbra, and its window shows a lit floor with a soft shadow. Arguments: its source, its
- * executable, and a command in front of it (a virtual display) or "". */
+/* The example: it needs at most 40 lines of penumbra, and its window shows a lit floor with a soft shadow. Arguments:
+ * its source, its executable, and a command in front of it (a virtual display) or "". */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -13,9 +13,7 @@
 
 static const char *source, *executable, *display;
 
-static int blank(const char *line) {
-  return line[strspn(line, " \t\r\n")] == 0;
-}
+static int blank(const char *line) { return line[strspn(line, " \t\r\n")] == 0; }
 
 static void test_lines(void **state) {
   char line[1024];

@@ -1,5 +1,5 @@
-/* The client's picture and the program's: the same model file, camera and light, through two renderers that share nothing but the
- * library. Arguments: the program, and a model file of the system's or "". */
+/* The client's picture and the program's: the same model file, camera and light, through two renderers that share
+ * nothing but the library. Arguments: the program, and a model file of the system's or "". */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -48,21 +48,23 @@ static int run_program(const char *model, const char *directory, const setting *
   double width = sun ? 2 * atan(s->light.half_u) * degrees : 2.0 * s->light.half_u;
   double height = sun ? 2 * atan(s->light.half_v) * degrees : 2.0 * s->light.half_v;
   snprintf(command, sizeof command,
-           "'%s' compare '%s' -t %s -t %s -t %s --save-dir '%s' --size %dx%d --map %d --fit %.9g,%.9g,%.9g,%.9g,%.9g,%.9g --ground off --up y "
-           "--light %s --light-center %.9g,%.9g,%.9g --light-target %.9g,%.9g,%.9g --light-up 0,1,0 --light-size %.17g,%.17g "
+           "'%s' compare '%s' -t %s -t %s -t %s --save-dir '%s' --size %dx%d --map %d --fit "
+           "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g --ground off --up y "
+           "--light %s --light-center %.9g,%.9g,%.9g --light-target %.9g,%.9g,%.9g --light-up 0,1,0 --light-size "
+           "%.17g,%.17g "
            "--camera-position %.9g,%.9g,%.9g --camera-target %.9g,%.9g,%.9g --camera-up 0,1,0 --fov %.17g "
            "--reference-samples 1 --no-cache --frames 1 --quiet -o '%s.png' > '%s.log' 2>&1",
            program, model, techniques[0], techniques[1], techniques[2], directory, CAMERA_WIDTH, CAMERA_HEIGHT,
-           s->light.map_width, f[0], f[1], f[2], f[3], f[4], f[5], sun ? "sun" : "rectangle", c[0], c[1], c[2], s->light_target.x, s->light_target.y,
-           s->light_target.z, width, height, s->eye.x, s->eye.y, s->eye.z, s->target.x, s->target.y, s->target.z,
-           2 * atan(camera_fov_tangent) * degrees, directory, directory);
+           s->light.map_width, f[0], f[1], f[2], f[3], f[4], f[5], sun ? "sun" : "rectangle", c[0], c[1], c[2],
+           s->light_target.x, s->light_target.y, s->light_target.z, width, height, s->eye.x, s->eye.y, s->eye.z,
+           s->target.x, s->target.y, s->target.z, 2 * atan(camera_fov_tangent) * degrees, directory, directory);
   int status = system(command);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fprintf(stderr, "failed: %s\n", command);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-static void compare_technique(host *h, const setting *s, const camera_view *v, const surfaces *seen, const char *directory,
-                              int index) {
+static void compare_technique(host *h, const setting *s, const camera_view *v, const surfaces *seen,
+                              const char *directory, int index) {
   char path[512];
   int width = 0, height = 0;
   pn_light *light = NULL;
@@ -83,8 +85,8 @@ static void compare_technique(host *h, const setting *s, const camera_view *v, c
   for (int i = 0; i < PIXELS; i++) {
     skip_pixel[i] = seen->position[4 * i + 3] >= 0 && !truth_plane_known(seen, i % width, i / width);
   }
-  /* Two rasterisations of the same view, from matrices that were composed by different code: view_error each, of which a step of the
-   * rasteriser's grid is the largest part. */
+  /* Two rasterisations of the same view, from matrices that were composed by different code: view_error each, of which
+   * a step of the rasteriser's grid is the largest part. */
   agreement a = agree(ours, width, height, 0, 0, theirs, width, height, skip_pixel);
   double delta = 2 * view_error(&v->view, seen), step = index == 2 ? 1.0 / 64 : index == 1 ? 1.0 / 25 : 1;
   double allowed = allowed_changes(a.range * delta / step);

@@ -1,4 +1,5 @@
-/* The receiver's options: reduced resolution, normals in every encoding, a mask, formats, and a result in the host's texture. */
+/* The receiver's options: reduced resolution, normals in every encoding, a mask, formats, and a result in the host's
+ * texture. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,11 +31,10 @@ static float *image_with(const pn_receiver_desc *desc) {
   return image;
 }
 
-static pn_receiver_desc plain(void) {
-  return host_receiver_desc(&v.view, &v.target);
-}
+static pn_receiver_desc plain(void) { return host_receiver_desc(&v.view, &v.target); }
 
-/* At 1/2 and 1/4 the picture is the same within 0.02 on average, and flat faces that see the whole light stay exactly 1. */
+/* At 1/2 and 1/4 the picture is the same within 0.02 on average, and flat faces that see the whole light stay exactly
+ * 1. */
 static void test_scale(void **state) {
   (void)state;
   pn_light_desc light_desc = host_light_desc();
@@ -63,7 +63,8 @@ static void test_scale(void **state) {
       lit++;
       wrong += image[i] != 1;
     }
-    printf("scale %d: mean difference %.4f on surfaces; %d of %d lit pixels below 1\n", scale, sum / surface, wrong, lit);
+    printf("scale %d: mean difference %.4f on surfaces; %d of %d lit pixels below 1\n", scale, sum / surface, wrong,
+           lit);
     assert_true(sum / surface < 0.02);
     assert_true(lit > 100);
     assert_int_equal(wrong, 0);
@@ -115,8 +116,8 @@ static GLuint normal_texture(pn_normal_encoding encoding, int in_view) {
   return texture;
 }
 
-/* With the true normals the picture is the one whose planes came from depth: on flat faces only the rejection of blockers next to the
- * plane could differ. */
+/* With the true normals the picture is the one whose planes came from depth: on flat faces only the rejection of
+ * blockers next to the plane could differ. */
 static void test_normals(void **state) {
   (void)state;
   double delta = view_error(&v.view, &seen), sample = 1.0 / 64;
@@ -208,8 +209,8 @@ static void test_into(void **state) {
   free(data);
 }
 
-/* The host's depth texture compares, as a shadow map would, and is bound with mipmaps it does not have: the numbers are read all the
- * same, and its parameters stay. */
+/* The host's depth texture compares, as a shadow map would, and is bound with mipmaps it does not have: the numbers are
+ * read all the same, and its parameters stay. */
 static void test_compare_mode(void **state) {
   (void)state;
   GLint mode = 0, filter = 0;

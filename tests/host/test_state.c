@@ -1,4 +1,5 @@
-/* GL state: with everything set oddly the library's results are the same to the bit, and the host finds everything as it left it. */
+/* GL state: with everything set oddly the library's results are the same to the bit, and the host finds everything as
+ * it left it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -30,7 +31,8 @@ static GLuint into;
 static pn_state_mode mode;
 static int counted;
 
-/* ---- the host's frame, call by call --------------------------------------------------------------------------------- */
+/* ---- the host's frame, call by call ---------------------------------------------------------------------------------
+ * */
 
 static pn_result make_context(int i) {
   (void)i;
@@ -50,9 +52,7 @@ static pn_result end(int i) {
   return pn_state_end(h.context);
 }
 
-static pn_result prepare(int i) {
-  return pn_prepare(h.context, techniques[i]);
-}
+static pn_result prepare(int i) { return pn_prepare(h.context, techniques[i]); }
 
 static pn_result make_casters(int i) {
   (void)i;
@@ -89,15 +89,12 @@ static pn_result make_light(int i) {
   return host_light(&h, &desc, techniques[i], &lights[i]);
 }
 
-static pn_result update(int i) {
-  return pn_maps_update(lights[i], h.casters, PN_GROUPS_ALL, receivers, VIEWS);
-}
+static pn_result update(int i) { return pn_maps_update(lights[i], h.casters, PN_GROUPS_ALL, receivers, VIEWS); }
 
-static pn_result see(int i) {
-  return pn_visibility(lights[i % LIGHTS], receivers[i / LIGHTS]);
-}
+static pn_result see(int i) { return pn_visibility(lights[i % LIGHTS], receivers[i / LIGHTS]); }
 
-/* The host has the results bound when their receiver gets another size, and while lights and receivers are destroyed. */
+/* The host has the results bound when their receiver gets another size, and while lights and receivers are destroyed.
+ * */
 static pn_result resize(int i) {
   pn_receiver_desc desc = host_receiver_desc(&views[0], &targets[0]);
   pn_image image;
@@ -168,10 +165,19 @@ typedef struct {
 
 static const step creation[] = {{"pn_context_create", make_context, 1}, {"pn_state_begin", begin, 1}};
 static const step frame[] = {
-    {"pn_prepare", prepare, LIGHTS}, {"pn_casters_create", make_casters, 1}, {"pn_mesh_add", add_mesh, SCENE_MESHES},
-    {"pn_mesh_moved", move_mesh, 1}, {"pn_receiver_set", make_receiver, VIEWS}, {"pn_light_set", make_light, LIGHTS},
-    {"nothing casts", see_nothing, 1}, {"pn_maps_update", update, LIGHTS}, {"pn_visibility", see, IMAGES}, {"pn_visibility_into", see_into, 1},
-    {"pn_debug_image", look, LIGHTS}, {"pn_times", times, LIGHTS}, {"pn_glsl", text, 1},
+    {"pn_prepare", prepare, LIGHTS},
+    {"pn_casters_create", make_casters, 1},
+    {"pn_mesh_add", add_mesh, SCENE_MESHES},
+    {"pn_mesh_moved", move_mesh, 1},
+    {"pn_receiver_set", make_receiver, VIEWS},
+    {"pn_light_set", make_light, LIGHTS},
+    {"nothing casts", see_nothing, 1},
+    {"pn_maps_update", update, LIGHTS},
+    {"pn_visibility", see, IMAGES},
+    {"pn_visibility_into", see_into, 1},
+    {"pn_debug_image", look, LIGHTS},
+    {"pn_times", times, LIGHTS},
+    {"pn_glsl", text, 1},
 };
 static const step closing[] = {{"pn_state_end", end, 1}};
 static const step destruction[] = {{"pn_light_destroy", destroy_some, 1}, {"pn_context_destroy", destroy, 1}};
@@ -250,10 +256,12 @@ static void unset_odd(void) {
 }
 
 /* The size of the default viewport is the window's, which the library does not know. */
-static const char *const resettable[] = {"VIEWPORT", "SCISSOR_BOX", "VIEWPORT[1]", "VIEWPORT[2]", "VIEWPORT[3]",
-                                         "SCISSOR_BOX[1]", "SCISSOR_BOX[2]", "SCISSOR_BOX[3]", NULL};
+static const char *const resettable[] = {"VIEWPORT",       "SCISSOR_BOX",    "VIEWPORT[1]",
+                                         "VIEWPORT[2]",    "VIEWPORT[3]",    "SCISSOR_BOX[1]",
+                                         "SCISSOR_BOX[2]", "SCISSOR_BOX[3]", NULL};
 
-/* ---- the tests ------------------------------------------------------------------------------------------------------ */
+/* ---- the tests ------------------------------------------------------------------------------------------------------
+ * */
 
 static void test_restore(void **state) {
   (void)state;
@@ -323,8 +331,8 @@ static void test_reset(void **state) {
 
 /* In a bracket, and in reset mode, no state is read back. */
 static void test_reads_nothing(void **state) {
-  static const char *const getters[] = {"glGetIntegerv", "glGetBooleanv", "glGetFloatv", "glGetDoublev", "glIsEnabled",
-                                        "glGetIntegeri_v", "glGetBooleani_v", "glGetVertexAttrib"};
+  static const char *const getters[] = {"glGetIntegerv", "glGetBooleanv",   "glGetFloatv",     "glGetDoublev",
+                                        "glIsEnabled",   "glGetIntegeri_v", "glGetBooleani_v", "glGetVertexAttrib"};
   (void)state;
   if (!counted_available()) skip();
   counted = 1;
@@ -376,7 +384,8 @@ static void test_callback(void **state) {
   destroy(0);
 }
 
-/* A result that the host still has bound may be made anew or destroyed: the binding becomes 0, as GL has it, and nothing fails. */
+/* A result that the host still has bound may be made anew or destroyed: the binding becomes 0, as GL has it, and
+ * nothing fails. */
 static void test_deleted_while_bound(void **state) {
   (void)state;
   for (int k = 0; k < 2; k++) {
@@ -445,9 +454,12 @@ static int clean(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test_teardown(test_restore, clean),       cmocka_unit_test_teardown(test_restore_viewports, clean),
-      cmocka_unit_test_teardown(test_scoped, clean),        cmocka_unit_test_teardown(test_reset, clean),
-      cmocka_unit_test_teardown(test_reads_nothing, clean), cmocka_unit_test_teardown(test_callback, clean),
+      cmocka_unit_test_teardown(test_restore, clean),
+      cmocka_unit_test_teardown(test_restore_viewports, clean),
+      cmocka_unit_test_teardown(test_scoped, clean),
+      cmocka_unit_test_teardown(test_reset, clean),
+      cmocka_unit_test_teardown(test_reads_nothing, clean),
+      cmocka_unit_test_teardown(test_callback, clean),
       cmocka_unit_test_teardown(test_deleted_while_bound, clean),
   };
   return cmocka_run_group_tests_name("state", tests, setup, teardown);

@@ -5,7 +5,8 @@
 
 truth_light truth_light_of(const pn_light_desc *desc, const pn_maps_info *maps) {
   static const float up[3] = {0, 1, 0};
-  truth_light out = {.shape = desc->shape, .center = v3_of(desc->center), .half_u = desc->half_u, .half_v = desc->half_v};
+  truth_light out = {
+      .shape = desc->shape, .center = v3_of(desc->center), .half_u = desc->half_u, .half_v = desc->half_v};
   out.direction = normalized(v3_of(desc->direction));
   vec3 axis = v3_of(desc->axis_u);
   if (dot(axis, axis) == 0) {
@@ -20,7 +21,8 @@ truth_light truth_light_of(const pn_light_desc *desc, const pn_maps_info *maps) 
   return out;
 }
 
-/* The fraction along o + f d where it meets the triangle, or -1; *a and *b are the barycentric weights of corners 1 and 2. */
+/* The fraction along o + f d where it meets the triangle, or -1; *a and *b are the barycentric weights of corners 1 and
+ * 2. */
 static double hit(vec3 o, vec3 d, vec3 p0, vec3 p1, vec3 p2, double *a, double *b) {
   vec3 e1 = sub(p1, p0), e2 = sub(p2, p0), h = cross(d, e2);
   double det = dot(e1, h);
@@ -130,13 +132,17 @@ int truth_hard(const truth_light *light, const scene *world, vec3 p, vec3 n, dou
 
 int truth_sees_all(const truth_light *light, const scene *world, vec3 p, vec3 n) {
   enum { SIDE = 9 };
-  if (truth_corners(light, p, n) < 4 || truth_hard(light, world, p, n, 2) != TRUTH_LIT) return 0;
+  if (truth_corners(light, p, n) < 4) return 0;
+  for (int texels = 1; texels <= 4; texels++) {
+    if (truth_hard(light, world, p, n, texels) != TRUTH_LIT) return 0;
+  }
   vec3 from = add(p, scaled(n, 1e-4));
   for (int k = 0; k < SIDE * SIDE; k++) {
     double a = 1.3 * light->half_u * (2.0 * (k % SIDE) / (SIDE - 1) - 1);
     double b = 1.3 * light->half_v * (2.0 * (k / SIDE) / (SIDE - 1) - 1);
     vec3 offset = add(scaled(light->u, a), scaled(light->v, b));
-    vec3 to = light->shape == PN_LIGHT_SUN ? add(p, scaled(sub(offset, light->direction), 20)) : add(light->center, offset);
+    vec3 to =
+        light->shape == PN_LIGHT_SUN ? add(p, scaled(sub(offset, light->direction), 20)) : add(light->center, offset);
     if (truth_blocked(world, from, to, 1)) return 0;
   }
   return 1;
