@@ -92,6 +92,9 @@ warned 'lies behind the light' builtin:boxes --light-center 0,-1,0 --light-targe
 warned 'sees nothing of the scene' builtin:boxes --camera-target 0,99,0
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv nan 0 0\nf 1 2 3\nf 1 3 4\nf 1 1 2\nf 1 2 5\n' >some.obj
 warned 'some.obj: dropped 1 triangle with a coordinate that is not finite, 1 triangle without area' some.obj
+printf 'newmtl m\nmap_d none.png\n' >hole.mtl
+printf 'mtllib hole.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n' >hole.obj
+warned 'hole.obj: texture none.png: the file is missing' hole.obj
 run 0 render builtin:room $small -o inside.png --camera-position -1.7,1,-0.6 --camera-target 0,1,0 # in the wardrobe
 run 0 render builtin:boxes $small -o down.png --camera-position 0,5,0 --camera-target 0,0,0        # along its own up
 
