@@ -159,10 +159,10 @@ static enum received receive(int fd, const char *path, struct scene *scene) {
 static int explain_death(const char *path, int wait_status, off_t size) {
   if (WIFSIGNALED(wait_status)) {
     int number = WTERMSIG(wait_status);
-    if (number == SIGXCPU || number == SIGKILL)
-      return input_error(
-          "%s: importing took more than %u s, which is too long for a file of its size; it is probably damaged", path,
-          import_seconds(size));
+    if (number == SIGXCPU)
+      return input_error("%s: importing took more than %u s, too long for a file of its size; it is probably damaged",
+                         path, import_seconds(size));
+    if (number == SIGKILL) return work_error("%s: the importer was killed, perhaps because memory ran out", path);
     return input_error("%s: the importer crashed on it (%s); the file is probably damaged", path, strsignal(number));
   }
   return input_error("%s: the importer gave up on it; the file is probably damaged or far too large", path);

@@ -113,18 +113,23 @@ static enum loaded decode(const void *bytes, size_t size, const struct alpha_sou
   return LOADED_NOT;
 }
 
+/* A path without its folders, whichever way its slashes lean. */
+static const char *last_part(const char *path) {
+  const char *last = path;
+  for (; *path; path++)
+    if (*path == '/' || *path == '\\') last = path + 1;
+  return last;
+}
+
 /* "*3", or the name of a file that the model carries with it. */
 static const struct aiTexture *find_embedded(const struct aiScene *model, const char *name) {
   if (name[0] == '*') {
     unsigned long index = strtoul(name + 1, NULL, 10);
     return index < model->mNumTextures ? model->mTextures[index] : NULL;
   }
-  const char *slash = strrchr(name, '/'), *backslash = strrchr(name, '\\');
-  const char *last = backslash > slash ? backslash + 1 : slash ? slash + 1 : name;
   for (unsigned i = 0; i < model->mNumTextures; i++) {
     const char *known = model->mTextures[i]->mFilename.data;
-    const char *end = strrchr(known, '/'), *back = strrchr(known, '\\');
-    if (*known && strcmp(back > end ? back + 1 : end ? end + 1 : known, last) == 0) return model->mTextures[i];
+    if (*known && strcmp(last_part(known), last_part(name)) == 0) return model->mTextures[i];
   }
   return NULL;
 }
