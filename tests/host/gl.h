@@ -34,15 +34,18 @@
   X(GETINTEGERV, GetIntegerv) X(GETMULTISAMPLEFV, GetMultisamplefv) X(GETPROGRAMINFOLOG, GetProgramInfoLog) \
   X(GETPROGRAMIV, GetProgramiv) X(GETQUERYIV, GetQueryiv) X(GETQUERYOBJECTUI64V, GetQueryObjectui64v) \
   X(GETQUERYOBJECTUIV, GetQueryObjectuiv) X(GETSHADERINFOLOG, GetShaderInfoLog) X(GETSHADERIV, GetShaderiv) \
-  X(GETSTRING, GetString) X(GETSTRINGI, GetStringi) X(GETTEXIMAGE, GetTexImage) X(GETTEXPARAMETERIV, GetTexParameteriv) \
+  X(GETSTRING, GetString) X(GETSTRINGI, GetStringi) X(GETTEXIMAGE, GetTexImage) \
+  X(GETTEXPARAMETERIV, GetTexParameteriv) \
   X(GETUNIFORMBLOCKINDEX, GetUniformBlockIndex) X(GETUNIFORMLOCATION, GetUniformLocation) X(HINT, Hint) \
   X(ISENABLED, IsEnabled) X(ISENABLEDI, IsEnabledi) X(LINEWIDTH, LineWidth) X(LINKPROGRAM, LinkProgram) \
-  X(LOGICOP, LogicOp) X(PIXELSTOREI, PixelStorei) X(POINTPARAMETERF, PointParameterf) X(POINTPARAMETERI, PointParameteri) \
+  X(LOGICOP, LogicOp) X(PIXELSTOREI, PixelStorei) X(POINTPARAMETERF, PointParameterf) \
+  X(POINTPARAMETERI, PointParameteri) \
   X(POINTSIZE, PointSize) X(POLYGONMODE, PolygonMode) X(POLYGONOFFSET, PolygonOffset) \
   X(PRIMITIVERESTARTINDEX, PrimitiveRestartIndex) X(PROVOKINGVERTEX, ProvokingVertex) X(READBUFFER, ReadBuffer) \
   X(READPIXELS, ReadPixels) X(RENDERBUFFERSTORAGE, RenderbufferStorage) \
   X(RENDERBUFFERSTORAGEMULTISAMPLE, RenderbufferStorageMultisample) X(SAMPLECOVERAGE, SampleCoverage) \
-  X(SAMPLEMASKI, SampleMaski) X(SAMPLERPARAMETERI, SamplerParameteri) X(SCISSOR, Scissor) X(SHADERSOURCE, ShaderSource) \
+  X(SAMPLEMASKI, SampleMaski) X(SAMPLERPARAMETERI, SamplerParameteri) X(SCISSOR, Scissor) \
+  X(SHADERSOURCE, ShaderSource) \
   X(STENCILFUNCSEPARATE, StencilFuncSeparate) X(STENCILMASKSEPARATE, StencilMaskSeparate) \
   X(STENCILOPSEPARATE, StencilOpSeparate) X(TEXBUFFER, TexBuffer) X(TEXIMAGE2D, TexImage2D) \
   X(TEXIMAGE2DMULTISAMPLE, TexImage2DMultisample) X(TEXIMAGE3D, TexImage3D) X(TEXPARAMETERI, TexParameteri) \
@@ -52,7 +55,8 @@
 
 /* Newer than the floor: NULL where the context is too old. */
 #define HOST_GL_OPTIONAL(X) \
-  X(CLIPCONTROL, ClipControl) X(DEBUGMESSAGECALLBACK, DebugMessageCallback) X(DEBUGMESSAGECONTROL, DebugMessageControl) \
+  X(CLIPCONTROL, ClipControl) X(DEBUGMESSAGECALLBACK, DebugMessageCallback) \
+  X(DEBUGMESSAGECONTROL, DebugMessageControl) \
   X(BINDIMAGETEXTURE, BindImageTexture) X(BINDPROGRAMPIPELINE, BindProgramPipeline) \
   X(GENPROGRAMPIPELINES, GenProgramPipelines) X(DELETEPROGRAMPIPELINES, DeleteProgramPipelines) \
   X(BINDTRANSFORMFEEDBACK, BindTransformFeedback) X(GENTRANSFORMFEEDBACKS, GenTransformFeedbacks) \
