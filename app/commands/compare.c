@@ -24,6 +24,7 @@ struct entry {
   cJSON *described; /* technique, label, parameters */
   pn_light *light;
   float *visibility;
+  float *search; /* NULL: the technique does not search, or nobody asks */
   uint8_t *picture;
   struct report_stage stages[STAGES_MAX];
 };
@@ -125,6 +126,30 @@ static int draw_techniques(struct comparison *c) {
     struct entry *e = &c->entries[i];
     e->visibility = malloc(pixel_count(c) * sizeof *e->visibility);
     status = e->visibility ? client_visibility(client, e->light, e->visibility) : memory_error();
+  }
+  return status;
+}
+
+/* What searches did, for --save-dir and --json: outside the timed frames. */
+static int look_at_searches(struct comparison *c) {
+  int status = STATUS_OK;
+  for (int i = 0; i < c->count && !status && (c->options->save_dir || c->options->json); i++) {
+    struct entry *e = &c->entries[i];
+    struct report_technique *t = &c->techniques[i];
+    e->search = malloc(4 * pixel_count(c) * sizeof *e->search);
+    status = e->search ? client_search(c->host.client, e->light, e->search, &t->searched) : memory_error();
+    for (size_t p = 0; !status && t->searched && p < pixel_count(c); p++) {
+      const float *pixel = e->search + 4 * p;
+      if (pixel[0] < 3) continue; /* decided without a look at primitives */
+      t->search_pixels++;
+      t->search_visited += pixel[1];
+      t->search_primitives += pixel[2];
+      t->search_window += pixel[3];
+    }
+    double count = t->search_pixels > 0 ? t->search_pixels : 1;
+    t->search_visited /= count;
+    t->search_primitives /= count;
+    t->search_window /= count;
   }
   return status;
 }
@@ -258,11 +283,26 @@ static int save_scalars(const struct comparison *c, const char *name, const floa
   return save_planes(c, name, &plane, 1);
 }
 
+static int save_search(const struct comparison *c, const struct entry *e) {
+  const struct exr_plane planes[4] = {
+      {"class", e->search, 4}, {"primitives", e->search + 2, 4}, {"visited", e->search + 1, 4}, {"window", e->search + 3, 4}};
+  size_t stem = strlen(e->file) - strlen(".exr");
+  char *name = malloc(stem + sizeof ".search.exr");
+  if (!name) return memory_error();
+  sprintf(name, "%.*s.search.exr", (int)stem, e->file);
+  int status = save_planes(c, name, planes, 4);
+  free(name);
+  return status;
+}
+
 static int save_buffers(const struct comparison *c) {
   int status = save_vectors(c, "position.exr", c->view->position);
   if (!status) status = save_vectors(c, "normal.exr", c->view->normal);
   if (!status) status = save_scalars(c, "reference.exr", c->truth.visibility);
-  for (int i = 0; i < c->count && !status; i++) status = save_scalars(c, c->entries[i].file, c->entries[i].visibility);
+  for (int i = 0; i < c->count && !status; i++) {
+    status = save_scalars(c, c->entries[i].file, c->entries[i].visibility);
+    if (!status && c->techniques[i].searched) status = save_search(c, &c->entries[i]);
+  }
   return status ? status : save_scalars(c, "mask.exr", c->view->mask);
 }
 
@@ -330,6 +370,7 @@ static int compare(struct comparison *c) {
   if (!status) status = view_read(c->host.gbuffer, c->scene, &c->view);
   if (!status) status = mark_pixels(c);
   if (!status) status = draw_techniques(c);
+  if (!status) status = look_at_searches(c);
   if (!status)
     status =
         truth_trace(c->scene, c->host.gbuffer, c->view, o->reference_samples, !o->given[OPTION_NO_CACHE], &c->truth);
@@ -345,6 +386,7 @@ static void free_comparison(struct comparison *c) {
     free(c->entries[i].file);
     cJSON_Delete(c->entries[i].described);
     free(c->entries[i].visibility);
+    free(c->entries[i].search);
     free(c->entries[i].picture);
   }
   free(c->entries);

@@ -129,16 +129,14 @@ int client_frame(struct client *client, pn_light *light) {
   return status ? status : client_check(client, pn_visibility(light, client->receiver));
 }
 
-int client_visibility(struct client *client, pn_light *light, float *out) {
-  pn_image image;
-  int status = client_check(client, pn_result_image(light, client->receiver, &image));
-  if (status) return status;
-  size_t row = (size_t)client->width;
+/* Texels of a texture of the view's size, top row first. */
+static int read_image(const struct client *client, pn_gl texture, GLenum layout, size_t channels, float *out) {
+  size_t row = (size_t)client->width * channels;
   float *below = malloc(row * sizeof *below);
   if (!below) return memory_error();
-  glBindTexture(GL_TEXTURE_2D, image.texture);
+  glBindTexture(GL_TEXTURE_2D, texture);
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glGetTexImage(GL_TEXTURE_2D, 0, GL_RED, GL_FLOAT, out);
+  glGetTexImage(GL_TEXTURE_2D, 0, layout, GL_FLOAT, out);
   for (int y = 0; y < client->height / 2; y++) { /* GL's rows are bottom first */
     float *a = out + (size_t)y * row, *b = out + (size_t)(client->height - 1 - y) * row;
     memcpy(below, b, row * sizeof *below);
@@ -147,4 +145,25 @@ int client_visibility(struct client *client, pn_light *light, float *out) {
   }
   free(below);
   return STATUS_OK;
+}
+
+int client_visibility(struct client *client, pn_light *light, float *out) {
+  pn_image image;
+  int status = client_check(client, pn_result_image(light, client->receiver, &image));
+  return status ? status : read_image(client, image.texture, GL_RED, 1, out);
+}
+
+int client_search(struct client *client, pn_light *light, float *out, int *found) {
+  *found = 0;
+  int status = client_check(client, pn_debug(client->context, 1));
+  if (!status) status = client_check(client, pn_visibility(light, client->receiver));
+  if (!status) status = client_check(client, pn_debug(client->context, 0));
+  const char *name;
+  pn_image image;
+  for (int i = 0; !status && !*found && pn_debug_image(light, client->receiver, i, &name, &image); i++) {
+    if (strcmp(name, "search") != 0 || image.width != client->width || image.height != client->height) continue;
+    *found = 1;
+    status = read_image(client, image.texture, GL_RGBA, 4, out);
+  }
+  return status;
 }

@@ -26,6 +26,10 @@ int client_frame(struct client *client, pn_light *light);
 /* The light's last visibility, one float a pixel, top row first. */
 int client_visibility(struct client *client, pn_light *light, float *out);
 
+/* What the light's search did for each pixel, four floats a pixel (see pn_debug), top row first: one more frame is drawn for it. *found is 0 when
+ * its technique does not search. */
+int client_search(struct client *client, pn_light *light, float *out, int *found);
+
 /* Turns a library result into the program's line and exit status; PN_OK is STATUS_OK. */
 int client_check(struct client *client, pn_result result);
 

@@ -40,6 +40,14 @@ static int add_times(cJSON *object, const struct report_technique *technique) {
   return 1;
 }
 
+/* Means over the pixels that looked at primitives; only of techniques that search. */
+static int add_search(cJSON *object, const struct report_technique *technique) {
+  if (!technique->searched) return 1;
+  cJSON *item = cJSON_AddObjectToObject(object, "search");
+  return item && add_number(item, "pixels", technique->search_pixels) && add_number(item, "visited", technique->search_visited) &&
+         add_number(item, "primitives", technique->search_primitives) && add_number(item, "window", technique->search_window);
+}
+
 static int add_result(cJSON *results, const struct report_technique *technique) {
   cJSON *item = cJSON_CreateObject();
   if (!item || !cJSON_AddItemToArray(results, item)) {
@@ -48,7 +56,7 @@ static int add_result(cJSON *results, const struct report_technique *technique) 
   }
   return add_text(item, "technique", technique->name) && add_text(item, "label", technique->label) &&
          add_text(item, "file", technique->file) && add_copy(item, "parameters", technique->parameters) &&
-         add_error(item, &technique->error) && add_times(item, technique);
+         add_error(item, &technique->error) && add_times(item, technique) && add_search(item, technique);
 }
 
 static int fill(cJSON *json, const struct report *report) {

@@ -6,7 +6,7 @@
 
 enum { PN_MAPS_MAX = 16, PN_LAYERS_MAX = 16, PN_PARAMETERS_MAX = 12 };
 
-/* Largest and smallest w of neighbourhoods: a pyramid (the papers' HSM: level i over blocks of 2^(i+1) texels a side) or a stack (their
+/* Largest and smallest w of neighbourhoods: a pyramid (the papers' HSM: level i over blocks of 2^i texels a side) or a stack (their
  * MSSM: level i over the 2^i x 2^i texels centred on each texel, at full resolution). Over quads, each texel brings its right and upper neighbours. */
 typedef enum { PN_RANGE_NONE = 0, PN_RANGE_PYRAMID, PN_RANGE_STACK } pn_range_structure;
 typedef struct {

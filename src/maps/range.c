@@ -19,10 +19,10 @@ static int level_count(int size) {
 
 static int larger(int a, int b) { return a > b ? a : b; }
 
-/* The pyramid's first level covers 2 x 2 texels of a map padded to powers of two; the stack has every level at full size, as array layers. */
+/* The pyramid's first level has a texel for each of the map's, padded to powers of two; the stack has every level at full size, as array layers. */
 pn_result pn_range_shape(pn_gpu *gpu, pn_texture *texture, const pn_range_kind *kind, int layers, int width, int height) {
   if (kind->structure == PN_RANGE_PYRAMID) {
-    int w = larger(power_above(width) / 2, 1), h = larger(power_above(height) / 2, 1);
+    int w = power_above(width), h = power_above(height);
     return pn_texture_shape(gpu, texture, GL_RG32F, w, h, layers, level_count(larger(w, h)));
   }
   if (kind->structure == PN_RANGE_STACK)

@@ -27,10 +27,8 @@ vec2 pn_texels(ivec2 at, int size) {
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-#if PN_FIRST && PN_STACK
+#if PN_FIRST
   vec2 range = pn_texels(at, PN_QUADS + 1);
-#elif PN_FIRST
-  vec2 range = pn_texels(2 * at, PN_QUADS + 2);
 #elif PN_STACK
   // Level i lies centred: from 2^(i-1) before the texel to 2^(i-1) - 1 after it. Its four parts of level i - 1 are centred a quarter
   // aside; the first level's parts are the texel and those before it. The border is clamped.

@@ -171,10 +171,11 @@ static bool invert_view(const pn_receiver_desc *d, pn_matrix *scene_from_clip, p
   return true;
 }
 
-/* Where stored depths are dense depends on the format; on top of the format's rounding, interpolation is off by a few units. */
+/* Where stored depths are dense depends on the format, which may cut off instead of rounding; on top of that, interpolation in float is off
+ * by two units of a depth near 1. */
 static void depth_error(const source_kind *kind, bool reversed, float quantum[4]) {
   double steps = kind->is_float ? 24 : kind->depth_bits > 24 ? 24 : kind->depth_bits;
-  quantum[0] = (float)(2 * ldexp(1, -(int)steps));
+  quantum[0] = (float)((kind->is_float ? 0 : ldexp(1, -(int)steps)) + 2 * 0x1p-24);
   quantum[1] = 0;
   if (kind->is_float && reversed) { /* floats are dense at 0, where reversed depth keeps its far distances */
     quantum[0] = 1e-30f;

@@ -1,5 +1,5 @@
 // Finds the micro-primitives that can hide light from a receiver, in one layer of one map, and hands them to the technique's cover. The technique defines
-// before this file: pn_Cover, pn_cover_rectangle, pn_cover_quad, pn_is_covered, pn_is_full, and the macros
+// before this file: pn_Cover, pn_cover_rectangle, pn_cover_quad, pn_cover_or_ask, pn_is_full, and the macros
 //   PN_PRIMITIVE  what a texel stands for, see primitive.glsl
 //   PN_GAPS       patches are widened to meet their left and lower neighbours
 //   PN_DESCENT    1: adaptive descent of the range pyramid; 0: every texel of the window, or of a coarser level past the cap
@@ -31,7 +31,8 @@ vec2 pn_front_range(pn_Receiver r, vec2 low, vec2 high, float dw_least, float dw
 // ---- single primitives ----------------------------------------------------------------------------------------------------
 
 bool pn_texel_hides(int light, pn_Receiver r, int map, ivec2 texel, float w) {
-  return pn_blocks(r, vec3(pn_map_st(light, map, vec2(texel) + 0.5), w));
+  // A patch reaches half a texel beyond its sample, over creases.
+  return pn_blocks_apart(light, r, vec3(pn_map_st(light, map, vec2(texel) + 0.5), w));
 }
 
 // A block of texels, from low to high (map coordinates), at w: a micropatch, or the coarser one that stands for many.
@@ -65,17 +66,18 @@ void pn_texel_patch(int light, highp sampler2DArray maps, pn_Receiver r, int map
   pn_search_done.z += 1.0;
 }
 
-// The quad from this texel's centre to that of its right upper neighbour: only where all four corners hide light (section 4).
+// The quad from this texel's centre to that of its right upper neighbour: only where all four corners hide light (section 4). Four at a time: no loop.
 void pn_texel_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 texel, inout pn_Cover c) {
-  float w[4];
-  for (int i = 0; i < 4; i++) {
-    ivec2 corner = texel + ivec2(i & 1, i >> 1);
-    w[i] = pn_map_fetch(light, maps, map, layer, corner);
-    if (w[i] <= r.m.z + r.epsilon_w || !pn_texel_hides(light, r, map, corner, w[i])) return;
-  }
+  vec4 dw = vec4(pn_map_fetch(light, maps, map, layer, texel), pn_map_fetch(light, maps, map, layer, texel + ivec2(1, 0)),
+                 pn_map_fetch(light, maps, map, layer, texel + ivec2(0, 1)), pn_map_fetch(light, maps, map, layer, texel + 1)) - r.m.z;
   vec2 low = pn_map_st(light, map, vec2(texel) + 0.5) - r.m.xy, high = pn_map_st(light, map, vec2(texel) + 1.5) - r.m.xy;
-  pn_cover_quad(c, pn_on_light(light, low, w[0] - r.m.z), pn_on_light(light, vec2(high.x, low.y), w[1] - r.m.z),
-                pn_on_light(light, vec2(low.x, high.y), w[2] - r.m.z), pn_on_light(light, high, w[3] - r.m.z));
+  vec4 s = vec4(low.x, high.x, low.x, high.x), t = vec4(low.y, low.y, high.y, high.y);
+  vec4 front = r.n.x * s + r.n.y * t - r.k * dw;
+  vec4 slack = r.epsilon_plane + r.sigma * (abs(s) + abs(t) + r.reach * abs(dw));
+  if (any(lessThanEqual(dw, vec4(r.epsilon_w))) || any(lessThanEqual(front, slack))) return;
+  vec2 scale = 0.5 / pn_extent(light);
+  vec4 x = 0.5 + scale.x * s / dw, y = 0.5 + scale.y * t / dw;
+  pn_cover_quad(c, vec2(x.x, y.x), vec2(x.y, y.y), vec2(x.z, y.z), vec2(x.w, y.w));
   pn_search_done.z += 1.0;
 }
 
@@ -185,7 +187,7 @@ void pn_coarse_patch(int light, highp sampler2DArray range, pn_Receiver r, int m
 #if PN_REFINE == 2
   vec2 w = pn_stack_at(light, range, map, layer, level, (block << level) + ((1 << level) >> 1));
 #else
-  vec2 w = texelFetch(range, ivec3(block, map * pn_map_layers(light) + layer), level - 1).rg;
+  vec2 w = texelFetch(range, ivec3(block, map * pn_map_layers(light) + layer), level).rg;
 #endif
   float dw = w.x - r.m.z;
   if (dw <= r.epsilon_w) return;
@@ -204,87 +206,150 @@ int pn_level_for(ivec2 size, int cap) {
   return level;
 }
 
+void pn_scan_one(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, ivec2 at, int level,
+                 inout pn_Cover c) {
+  pn_search_done.y += 1.0;
+  if (level == 0)
+    pn_texel_primitive(light, maps, r, map, layer, at, c);
+  else
+    pn_coarse_patch(light, range, r, map, layer, at, level, c);
+}
+#define PN_TURN(i) if (x + i <= last.x) pn_scan_one(light, maps, range, r, map, layer, ivec2(x + i, y), level, c);
+
 void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, pn_Window window,
              int cap, inout pn_Cover c) {
   int level = pn_level_for(window.high - window.low + 1, cap);
   ivec2 first = window.low >> level, last = window.high >> level;
   for (int y = first.y; y <= last.y; y++)
-    for (int x = first.x; x <= last.x; x += PN_ROW)
-      for (int i = 0; i < PN_ROW; i++) {
-        ivec2 at = ivec2(x + i, y);
-        if (at.x > last.x) continue;
-        pn_search_done.y += 1.0;
-        if (level == 0)
-          pn_texel_primitive(light, maps, r, map, layer, at, c);
-        else
-          pn_coarse_patch(light, range, r, map, layer, at, level, c);
-      }
+    for (int x = first.x; x <= last.x; x += PN_ROW) {
+      PN_TURN(0) PN_TURN(1) PN_TURN(2) PN_TURN(3) PN_TURN(4) PN_TURN(5) PN_TURN(6) PN_TURN(7)
+    }
 }
 #endif
 
 // ---- adaptive descent --------------------------------------------------------------------------------------------------------------
 
 #if PN_DESCENT
-// One block of the pyramid. Returns whether its children must be looked at.
-bool pn_visit_block(int light, highp sampler2DArray range, pn_Receiver r, int map, int layer, ivec2 node, int level, float merge,
-                    inout pn_Cover c) {
-  vec2 w = texelFetch(range, ivec3(node, map * pn_map_layers(light) + layer), level).rg;
-  float dw_most = w.x - r.m.z;
-  if (dw_most <= r.epsilon_w) return false; // nothing nearer than the receiver
+#define PN_SKIP 0
+#define PN_DOWN 1
+#define PN_LEAF_QUAD 2 // a quad that must be covered exactly
+
+struct pn_Rectangle { vec2 low, high; }; // on the light, 0 to 1
+
+#if PN_PRIMITIVE != PN_PATCH
+// A block of quads as one: the rectangle through the middles of its edges, its corners at their own w, so that neighbouring blocks meet. hides: whether all
+// four corners hide light.
+pn_Rectangle pn_block_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 first, ivec2 last, out bool hides) {
+  vec4 dw = vec4(pn_map_fetch(light, maps, map, layer, first), pn_map_fetch(light, maps, map, layer, ivec2(last.x, first.y)),
+                 pn_map_fetch(light, maps, map, layer, ivec2(first.x, last.y)), pn_map_fetch(light, maps, map, layer, last)) - r.m.z;
+  vec2 low = pn_map_st(light, map, vec2(first) + 0.5) - r.m.xy, high = pn_map_st(light, map, vec2(last) + 0.5) - r.m.xy;
+  vec4 s = vec4(low.x, high.x, low.x, high.x), t = vec4(low.y, low.y, high.y, high.y);
+  vec4 front = r.n.x * s + r.n.y * t - r.k * dw;
+  vec4 slack = r.epsilon_plane + r.sigma * (abs(s) + abs(t) + r.reach * abs(dw));
+  hides = all(greaterThan(dw, vec4(r.epsilon_w))) && all(greaterThan(front, slack));
+  vec2 scale = 0.5 / pn_extent(light);
+  vec4 x = clamp(0.5 + scale.x * s / dw, -8.0, 8.0), y = clamp(0.5 + scale.y * t / dw, -8.0, 8.0);
+  vec2 along_x = 0.5 * (x.xy + x.zw), along_y = 0.5 * (y.xz + y.yw);
+  return pn_Rectangle(vec2(min(along_x.x, along_x.y), min(along_y.x, along_y.y)),
+                      vec2(max(along_x.x, along_x.y), max(along_y.x, along_y.y)));
+}
+#endif
+
+// One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Only one field is made: of the rectangle that the block
+// becomes, or, when it does not become one, of what it could hide at most.
+int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, ivec2 node, int level,
+                   float merge, inout pn_Cover c) {
+  vec2 dw = texelFetch(range, ivec3(node, map * pn_map_layers(light) + layer), level).rg - r.m.z; // largest, smallest
   vec2 extent = pn_extent(light);
-  vec2 low = pn_block_st(light, map, node << (level + 1)) - r.m.xy;
-  vec2 high = pn_block_st(light, map, (node + 1) << (level + 1)) - r.m.xy;
-  if (any(greaterThan(low, extent * dw_most)) || any(lessThan(high, -extent * dw_most))) return false; // beside the light
-  float dw_least = max(w.y - r.m.z, r.epsilon_w);
-  vec2 front = pn_front_range(r, low, high, dw_least, dw_most);
-  if (front.y <= 0.0) return false; // behind the receiver's tangent plane
+  vec2 low = pn_block_st(light, map, node << level) - r.m.xy, high = pn_block_st(light, map, (node + 1) << level) - r.m.xy;
+  bool beside = any(greaterThan(low, extent * dw.x)) || any(lessThan(high, -extent * dw.x));
+#if PN_PRIMITIVE == PN_PATCH
+  // A single texel is asked at its centre, as the sample it is.
+  vec2 margin = level == 0 ? 0.5 * (high - low) : vec2(0.0);
+  vec2 centre = abs(low + margin), texel = 2.0 * margin;
+  float rise = min(max(centre.x, centre.y), max(texel.x, texel.y));
+#else
+  const vec2 margin = vec2(0.0);
+  const float rise = 0.0;
+#endif
+  float dw_least = max(dw.y, r.epsilon_w);
+  vec2 front = pn_front_range(r, low + margin, high - margin, dw_least, dw.x);
+  if (dw.x <= r.epsilon_w || beside || front.y <= rise) return PN_SKIP; // not nearer, not before the light, or behind the tangent plane
   // Where the block's edges fall on the light, at its nearest and at its farthest.
-  vec2 a0 = clamp(pn_on_light(light, low, dw_most), 0.0, 1.0), a1 = clamp(pn_on_light(light, low, dw_least), 0.0, 1.0);
-  vec2 b0 = clamp(pn_on_light(light, high, dw_most), 0.0, 1.0), b1 = clamp(pn_on_light(light, high, dw_least), 0.0, 1.0);
-  if (pn_is_covered(c, min(a0, a1), max(b0, b1))) return false;
-  bool all_hide = w.y - r.m.z > r.epsilon_w && front.x > 0.0;
+  vec2 scale = 0.5 / extent;
+  vec2 a0 = clamp(0.5 + scale * low / dw.x, 0.0, 1.0), a1 = clamp(0.5 + scale * low / dw_least, 0.0, 1.0);
+  vec2 b0 = clamp(0.5 + scale * high / dw.x, 0.0, 1.0), b1 = clamp(0.5 + scale * high / dw_least, 0.0, 1.0);
   vec2 moved = max(abs(a0 - a1), abs(b0 - b1));
-  if (!all_hide || max(moved.x, moved.y) > merge) return true;
-  pn_cover_rectangle(c, 0.5 * (a0 + a1), 0.5 * (b0 + b1));
-  pn_search_done.z += 1.0;
-  return false;
+  bool one = dw.y > r.epsilon_w && front.x > rise && max(moved.x, moved.y) <= merge;
+  pn_Rectangle most = pn_Rectangle(min(a0, a1), max(b0, b1));
+#if PN_PRIMITIVE == PN_PATCH
+  pn_Rectangle as_one = pn_Rectangle(0.5 * (a0 + a1), 0.5 * (b0 + b1));
+#else
+  bool hides;
+  pn_Rectangle as_one = pn_block_quad(light, maps, r, map, layer, node << level, (node + 1) << level, hides);
+#if PN_PRIMITIVE == PN_QUAD
+  one = one || level == 0 && hides;
+#endif
+#endif
+  if (one) most = as_one;
+  bool done = pn_cover_or_ask(c, most.low, most.high, one);
+  if (one) pn_search_done.z += 1.0;
+#if PN_PRIMITIVE == PN_QUAD_EXACT
+  if (!done && level == 0 && hides) return PN_LEAF_QUAD;
+#endif
+  return done || level == 0 ? PN_SKIP : PN_DOWN;
 }
 
-// Depth first over the blocks that the window touches, without a stack: from a last child up, from any other to the next one. Level -1 are texels.
+// A step of the walk: down to the first child, or past all last children and then aside. False at the end.
+bool pn_walk(inout ivec2 node, inout int level, int top, ivec2 first, ivec2 last, bool down) {
+  if (down) {
+    level--;
+    node <<= 1;
+    return true;
+  }
+  int both = node.x & node.y, up = 0;
+  while (level + up < top && (both >> up & 1) == 1) up++;
+  level += up;
+  node >>= up;
+  if (level < top) {
+    node += (node.x & 1) == 0 ? ivec2(1, 0) : ivec2(-1, 1);
+    return true;
+  }
+  node = node.x < last.x ? node + ivec2(1, 0) : ivec2(first.x, node.y + 1);
+  return node.y <= last.y;
+}
+
+// Depth first over the blocks that the window touches, without a stack. Where quads are covered exactly, the inner loop goes on until one must be, so
+// that neighbouring pixels do that together. Software GL ends a shader's loops after 65535 turns in all.
 void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, pn_Window window,
                 float merge, inout pn_Cover c) {
   int extent = max(window.high.x - window.low.x, window.high.y - window.low.y), top = 0;
-  while ((extent >> (top + 1)) > 2) top++;
-  ivec2 first = window.low >> (top + 1), last = window.high >> (top + 1);
+  while ((extent >> top) > 2) top++;
+  ivec2 first = window.low >> top, last = window.high >> top;
   ivec2 node = first;
-  int level = top;
-  for (int turn = 0; turn < 60000; turn++) { // software GL ends a shader's loops after 65535 turns
-    bool down;
-    pn_search_done.y += 1.0;
-    if (level >= 0) {
-      down = pn_visit_block(light, range, r, map, layer, node, level, merge, c);
-    } else {
-      pn_texel_primitive(light, maps, r, map, layer, node, c);
-      down = false;
+  int level = top, turns = 0;
+  bool going = true;
+#if PN_PRIMITIVE == PN_QUAD_EXACT
+  while (going) {
+    ivec2 quad = ivec2(-1);
+    while (going && quad.x < 0 && turns < 15000) {
+      turns++;
+      pn_search_done.y += 1.0;
+      int what = pn_visit_block(light, maps, range, r, map, layer, node, level, merge, c);
+      if (what == PN_LEAF_QUAD) quad = node;
+      going = pn_walk(node, level, top, first, last, what == PN_DOWN) && !pn_is_full(c);
     }
-    if (down) {
-      level--;
-      node <<= 1;
-      continue;
-    }
-    // To the next block in this order: past all last children, then aside.
-    int both = node.x & node.y, up = 0;
-    while (level + up < top && (both >> up & 1) == 1) up++;
-    level += up;
-    node >>= up;
-    if (level < top) {
-      node = (node.x & 1) == 0 ? node + ivec2(1, 0) : node + ivec2(-1, 1);
-    } else {
-      node.x++;
-      if (node.x > last.x) node = ivec2(first.x, node.y + 1);
-      if (node.y > last.y || pn_is_full(c)) break;
-    }
+    if (quad.x >= 0) pn_texel_quad(light, maps, r, map, layer, quad, c);
+    going = going && turns < 15000;
   }
+#else
+  while (going && turns < 30000) {
+    turns++;
+    pn_search_done.y += 1.0;
+    bool down = pn_visit_block(light, maps, range, r, map, layer, node, level, merge, c) == PN_DOWN;
+    going = pn_walk(node, level, top, first, last, down) && !pn_is_full(c);
+  }
+#endif
 }
 #endif
 

@@ -1,7 +1,7 @@
 // The search window: texels that can block a receiver, from the light's extent and the nearest caster there, narrowed by the range pyramid.
 #include "receiver/receiver.glsl"
 
-// Largest and smallest w in a window of texels (both ends included), from the pyramid whose level i has them over 2^(i+1) x 2^(i+1) texels. Four samples of the coarsest level that is still no larger than the window.
+// Largest and smallest w in a window of texels (both ends included), from the pyramid whose level i has them over 2^i x 2^i texels. Four samples of the coarsest level that is still no larger than the window.
 vec2 pn_range_over(int light, highp sampler2DArray pyramid, int map, int layer, ivec2 low, ivec2 high) {
   ivec2 last = pn_map_size(light) - 1;
   if (any(lessThan(high, ivec2(0))) || any(greaterThan(low, last))) return vec2(PN_NOTHING);
@@ -9,9 +9,9 @@ vec2 pn_range_over(int light, highp sampler2DArray pyramid, int map, int layer, 
   high = min(high, last);
   int extent = max(high.x - low.x, high.y - low.y);
   int level = 0;
-  while ((extent >> (level + 1)) > 1) level++;
+  while ((extent >> level) > 1) level++;
   int array_layer = map * pn_map_layers(light) + layer;
-  ivec2 a = low >> (level + 1), b = high >> (level + 1);
+  ivec2 a = low >> level, b = high >> level;
   // The window may touch three blocks along an axis where it is not aligned; the one between is then read as well.
   ivec2 c = (a + b) >> 1;
   vec2 range = vec2(PN_NOTHING, -PN_NOTHING);

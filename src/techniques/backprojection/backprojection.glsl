@@ -15,8 +15,11 @@ void pn_cover_quad(inout pn_Cover c, vec2 p00, vec2 p10, vec2 p01, vec2 p11) {
   c += 0.5 * abs(a.x * b.y - a.y * b.x);
 }
 
-// A sum does not know where its parts lie.
-bool pn_is_covered(pn_Cover c, vec2 low, vec2 high) { return any(greaterThanEqual(clamp(low, 0.0, 1.0), clamp(high, 0.0, 1.0))); }
+// Covers the rectangle, or asks whether it is hidden already: a sum does not know, unless nothing of it lies on the light.
+bool pn_cover_or_ask(inout pn_Cover c, vec2 low, vec2 high, bool cover) {
+  if (cover) pn_cover_rectangle(c, low, high);
+  return cover || any(lessThanEqual(high, low));
+}
 
 bool pn_is_full(pn_Cover c) { return c >= 1.0; }
 

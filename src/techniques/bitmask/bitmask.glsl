@@ -22,11 +22,15 @@ void pn_cover_quad(inout pn_Cover c, vec2 p00, vec2 p10, vec2 p01, vec2 p11) {
 #endif
 }
 
-// Whether everything in the rectangle is hidden already.
-bool pn_is_covered(pn_Cover c, vec2 low, vec2 high) {
+// Covers the rectangle, or asks whether it is hidden already; true when it is now.
+bool pn_cover_or_ask(inout pn_Cover c, vec2 low, vec2 high, bool cover) {
   pn_Field f = pn_rectangle(low, high);
   uvec4 open = uvec4(0u);
-  for (int i = 0; i < PN_WORDS; i++) open |= f.bits[i] & ~c.bits[i];
+  uint take = cover ? 0xffffffffu : 0u;
+  for (int i = 0; i < PN_WORDS; i++) {
+    c.bits[i] |= f.bits[i] & take;
+    open |= f.bits[i] & ~c.bits[i];
+  }
   return open == uvec4(0u);
 }
 
