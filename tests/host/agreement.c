@@ -38,6 +38,12 @@ agreement agree(const float *a, int a_width, int a_height, int offset_x, int off
   return out;
 }
 
+int dark_pixels(const float *image, int width, int height) {
+  int count = 0;
+  for (int i = 0; i < width * height; i++) count += image[i] < 0.5f;
+  return count;
+}
+
 double allowed_changes(double expected) { return expected + 4 * sqrt(expected) + 4; }
 
 double view_error(const camera *view, const surfaces *seen) {

@@ -36,6 +36,9 @@ double allowed_changes(double expected);
 /* The largest camera_depth_error over the surfaces of a view, plus one step of the rasteriser's grid. */
 double view_error(const camera *view, const surfaces *seen);
 
+/* Pixels below one half: a test that compares pictures makes sure that they show a shadow. */
+int dark_pixels(const float *image, int width, int height);
+
 /* Writes a picture of visibility as PGM when the environment names a directory in HOST_PICTURES: for looking at. */
 void save_picture(const char *name, const float *image, int width, int height);
 

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "agreement.h"
 #include "counted.h"
 #include "host.h"
 
@@ -162,6 +163,7 @@ static void test_every_allocation(void **state) {
   run();
   float *expected = host_result(light, receiver);
   assert_non_null(expected);
+  assert_true(dark_pixels(expected, WIDTH, HEIGHT) > 10);
   long count = allocations;
   end();
   /* All of the first and the last ones; of very many in between every n-th, n odd, so that about eighty are tried. */

@@ -33,6 +33,7 @@ static void test_pairs(void **state) {
       assert_int_equal(host_light(h, &descs[l], l ? "pcf" : "pcss", &light), PN_OK);
       alone[l][r] = host_visibility(h, light, &v[r]);
       assert_non_null(alone[l][r]);
+      assert_true(dark_pixels(alone[l][r], CAMERA_WIDTH, CAMERA_HEIGHT) > 100);
       pn_light_destroy(&light);
     }
     assert_int_equal(host_light(h, &descs[l], l ? "pcf" : "pcss", &lights[l]), PN_OK);

@@ -72,6 +72,7 @@ static void test_technique(void **state) {
     save_picture(name, image, CAMERA_WIDTH, CAMERA_HEIGHT);
     assert_int_equal(pn_light_maps(light, &maps), PN_OK);
     truth_light truth = truth_light_of(&descs[i], &maps);
+    assert_true(dark_pixels(image, CAMERA_WIDTH, CAMERA_HEIGHT) > 1000);
     for (int p = 0; p < PIXELS; p++) {
       assert_true(image[p] >= 0 && image[p] <= 1);
       if (seen.position[4 * p + 3] < 0) assert_true(image[p] == 1);
