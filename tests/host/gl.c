@@ -12,7 +12,9 @@ static void (*proc(const char *name))(void) { return eglGetProcAddress(name); }
 
 static void APIENTRY on_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                                 const GLchar *text, const void *user) {
-  (void)source, (void)id, (void)severity, (void)user;
+  (void)id, (void)severity, (void)user;
+  /* A text that does not compile is an error of the text's, not of a GL call. */
+  if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
   if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) {
     debug_errors++;
     fprintf(stderr, "GL: %.*s\n", (int)length, text);
