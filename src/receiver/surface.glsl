@@ -43,13 +43,14 @@ void pn_position(ivec2 pixel, float depth, out vec3 p, out vec3 error) {
   vec4 v = vec4(vec2(pixel) + 0.5, depth, 1.0);
   vec4 h = pn_light_from_pixel * v;
   p = h.xyz / h.w;
-  // Depth's own error moves the point along the ray; the four products and sums of a float matrix move it anywhere.
+  // Depth's own error moves the point along the ray. A float matrix moves it anywhere: each term of a row is rounded as an entry, as a product
+  // and in three sums, and a quotient may be off by 2.5 units in the last place: five roundings of 2^-24 each time.
   vec4 along = pn_light_from_pixel[2];
   vec4 a = abs(v);
   vec4 sum = abs(pn_light_from_pixel[0]) * a.x + abs(pn_light_from_pixel[1]) * a.y + abs(pn_light_from_pixel[2]) * a.z +
              abs(pn_light_from_pixel[3]);
   error = abs((along.xyz - p * along.w) / h.w) * pn_depth_error(depth) +
-          2.4e-7 * (sum.xyz + abs(p) * sum.w) / abs(h.w);
+          3e-7 * ((sum.xyz + abs(p) * sum.w) / abs(h.w) + abs(p));
 }
 
 #if !PN_NORMALS

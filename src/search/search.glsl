@@ -238,17 +238,22 @@ struct pn_Rectangle { vec2 low, high; }; // on the light, 0 to 1
 
 #if PN_PRIMITIVE != PN_PATCH
 // A block of quads as one: the rectangle through the middles of its edges, its corners at their own w, so that neighbouring blocks meet. hides: whether all
-// four corners hide light.
+// four corners lie in front of the receiver's plane. Only for blocks without an empty texel; of others the answer means nothing.
 pn_Rectangle pn_block_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 first, ivec2 last, out bool hides) {
-  vec4 dw = vec4(pn_map_fetch(light, maps, map, layer, first), pn_map_fetch(light, maps, map, layer, ivec2(last.x, first.y)),
-                 pn_map_fetch(light, maps, map, layer, ivec2(first.x, last.y)), pn_map_fetch(light, maps, map, layer, last)) - r.m.z;
+  int array_layer = map * pn_map_layers(light) + layer;
+  ivec2 end = min(last, pn_map_size(light) - 1);
+  vec4 depth = vec4(texelFetch(maps, ivec3(first, array_layer), 0).r, texelFetch(maps, ivec3(end.x, first.y, array_layer), 0).r,
+                    texelFetch(maps, ivec3(first.x, end.y, array_layer), 0).r, texelFetch(maps, ivec3(end, array_layer), 0).r);
+  vec2 w_of_depth = pn_lights[light].map_depth[map].xy;
+  vec4 dw = w_of_depth.x + w_of_depth.y * depth - r.m.z;
   vec2 low = pn_map_st(light, map, vec2(first) + 0.5) - r.m.xy, high = pn_map_st(light, map, vec2(last) + 0.5) - r.m.xy;
   vec4 s = vec4(low.x, high.x, low.x, high.x), t = vec4(low.y, low.y, high.y, high.y);
   vec4 front = r.n.x * s + r.n.y * t - r.k * dw;
   vec4 slack = r.epsilon_plane + r.sigma * (abs(s) + abs(t) + r.reach * abs(dw));
-  hides = all(greaterThan(dw, vec4(r.epsilon_w))) && all(greaterThan(front, slack));
+  hides = all(greaterThan(front, slack));
   vec2 scale = 0.5 / pn_extent(light);
-  vec4 x = clamp(0.5 + scale.x * s / dw, -8.0, 8.0), y = clamp(0.5 + scale.y * t / dw, -8.0, 8.0);
+  vec4 far = 1.0 / dw;
+  vec4 x = 0.5 + scale.x * s * far, y = 0.5 + scale.y * t * far;
   vec2 along_x = 0.5 * (x.xy + x.zw), along_y = 0.5 * (y.xz + y.yw);
   return pn_Rectangle(vec2(min(along_x.x, along_x.y), min(along_y.x, along_y.y)),
                       vec2(max(along_x.x, along_x.y), max(along_y.x, along_y.y)));
@@ -288,14 +293,14 @@ int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray ra
   bool hides;
   pn_Rectangle as_one = pn_block_quad(light, maps, r, map, layer, node << level, (node + 1) << level, hides);
 #if PN_PRIMITIVE == PN_QUAD
-  one = one || level == 0 && hides;
+  one = one || level == 0 && hides && dw.y > r.epsilon_w;
 #endif
 #endif
   if (one) most = as_one;
   bool done = pn_cover_or_ask(c, most.low, most.high, one);
   if (one) pn_search_done.z += 1.0;
 #if PN_PRIMITIVE == PN_QUAD_EXACT
-  if (!done && level == 0 && hides) return PN_LEAF_QUAD;
+  if (!done && level == 0 && hides && dw.y > r.epsilon_w) return PN_LEAF_QUAD;
 #endif
   return done || level == 0 ? PN_SKIP : PN_DOWN;
 }

@@ -18,7 +18,7 @@ static const pn_parameter parameters[COUNT] = {
     [SAMPLES] = {"samples", "", "points on the light: N x N, or 16 x 16 jittered", "section 3, Fig. 3", PN_CHOICE, 0, 3,
                  SAMPLES_16J, samples},
     [PRIMITIVE] = {"primitive", "", "what texels stand for: rectangles, or quads between texel centres, covered by the paper's rectangle or exactly",
-                   "section 4", PN_CHOICE, 0, 2, PN_PRIMITIVE_QUAD_EXACT, primitives},
+                   "section 4", PN_CHOICE, 0, 2, PN_PRIMITIVE_QUAD, primitives},
     [MAPS] = {"maps", "", "nearest surface, nearest and farthest, or peeled layers", "section 3.2", PN_CHOICE, 0, 2,
               MAPS_TWO_SIDED, maps},
     [LAYERS] = {"layers", "", "how many layers are peeled, with maps=layers", "section 3.2", PN_INT, 1, PN_LAYERS_MAX, 2, NULL},
@@ -35,10 +35,11 @@ static void preset(int choice, double *values) {
   values[PRESET] = choice;
   if (choice == 0) { /* fast */
     values[PRIMITIVE] = PN_PRIMITIVE_PATCH;
-    values[MERGE] = 2;
+    values[MERGE] = 4;
   }
   if (choice == 2) { /* exact */
     values[SAMPLES] = SAMPLES_32;
+    values[PRIMITIVE] = PN_PRIMITIVE_QUAD_EXACT;
     values[MAPS] = MAPS_LAYERS;
     values[LAYERS] = 6;
     values[MERGE] = 0.5;
