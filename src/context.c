@@ -6,7 +6,10 @@
 /* ---- creation ---- */
 
 pn_result pn_context_create(const pn_context_desc *desc, pn_context **out) {
-  if (!out) return PN_ERROR_ARGUMENT;
+  if (!out) {
+    if (desc && desc->log) desc->log(desc->user, PN_LOG_ERROR, PN_MESSAGE_NULL_ARGUMENT, "pn_context_create: out is NULL");
+    return PN_ERROR_ARGUMENT;
+  }
   *out = NULL;
   void *(*allocate)(void *, void *, size_t) = desc ? desc->allocate : NULL;
   pn_context *context = allocate ? allocate(desc->user, NULL, sizeof *context) : malloc(sizeof *context);

@@ -42,8 +42,12 @@ static const char *forward_text(pn_context *context, const char *path, const cha
 const char *pn_glsl(pn_context *context, const char *spec, int glsl_version, int es) {
   if (!context) return NULL;
   pn_gpu *gpu = &context->gpu;
-  if (!spec || glsl_version < (es ? 300 : 330)) {
-    pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_FORWARD, "GLSL 330 or GLSL ES 300 at least, and a spec, are needed");
+  if (!spec) {
+    pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_glsl: spec is NULL");
+    return NULL;
+  }
+  if (glsl_version < (es ? 300 : 330)) {
+    pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_FORWARD, "GLSL 330 or GLSL ES 300 at least is needed");
     return NULL;
   }
   if (!strcmp(spec, "caster")) return forward_text(context, "casters/peel.glsl", NULL, "");
@@ -69,8 +73,14 @@ const char *pn_glsl(pn_context *context, const char *spec, int glsl_version, int
 
 static pn_result check_lights(pn_light *const *lights, int count, const pn_slots *slots) {
   pn_gpu *gpu = &lights[0]->object.context->gpu;
-  if (!slots || count > PN_FORWARD_LIGHTS_MAX || slots->first_texture_unit < 0 || slots->uniform_binding < 0)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_FORWARD, "1 to %d lights, and slots not below 0", PN_FORWARD_LIGHTS_MAX);
+  if (!slots) return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_bind: slots is NULL");
+  GLint units = 0, bindings = 0;
+  GL(gpu, GetIntegerv)(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, &units);
+  GL(gpu, GetIntegerv)(GL_MAX_UNIFORM_BUFFER_BINDINGS, &bindings);
+  if (count > PN_FORWARD_LIGHTS_MAX || slots->first_texture_unit < 0 || slots->first_texture_unit > units - 2 * count ||
+      slots->uniform_binding < 0 || slots->uniform_binding >= bindings)
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_FORWARD, "1 to %d lights, units below %d, a binding below %d",
+                   PN_FORWARD_LIGHTS_MAX, units, bindings);
   for (int i = 0; i < count; i++) {
     if (!lights[i] || lights[i]->technique != lights[0]->technique || !lights[i]->technique->shader)
       return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_FORWARD, "the lights must share a technique that has a forward form");
@@ -116,7 +126,8 @@ pn_result pn_bind(pn_light *const *lights, int count, pn_gl program, const pn_sl
   pn_result result = check_lights(lights, count, slots);
   if (result == PN_OK) result = fill_blocks(context, lights, count);
   if (result != PN_OK) return result;
-  GLuint block = GL(gpu, GetUniformBlockIndex)(program, "pn_block");
+  bool linked = GL(gpu, IsProgram)(program);
+  GLuint block = linked ? GL(gpu, GetUniformBlockIndex)(program, "pn_block") : GL_INVALID_INDEX;
   if (block == GL_INVALID_INDEX)
     return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_FORWARD, "program %u does not contain pn_glsl's text", program);
   GLint before = 0, unit = 0;

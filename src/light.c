@@ -111,6 +111,10 @@ pn_result pn_light_set(pn_light *light, const pn_light_desc *desc) {
 
 pn_result pn_light_technique(pn_light *light, const char *spec, char *why, size_t why_size) {
   if (!light) return PN_ERROR_ARGUMENT;
+  if (!spec) {
+    if (why && why_size) why[0] = 0;
+    return pn_fail(gpu_of(light), PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_light_technique: spec is NULL");
+  }
   char text[512];
   const pn_technique *table;
   double values[PN_PARAMETERS_MAX] = {0};
@@ -188,22 +192,26 @@ static pn_result bind_block(pn_light *light) {
   return result;
 }
 
-/* What PN_FIT_VISIBLE and PN_FIT_FRUSTUM look at. */
-static pn_result find_visible(pn_light *light, pn_receiver *const *receivers, int count) {
+/* What PN_FIT_FRUSTUM looks at; for PN_FIT_VISIBLE too it comes first, because it costs nothing and may settle the matter. */
+static pn_result find_frusta(pn_light *light, pn_receiver *const *receivers, int count) {
   bool wanted = light->desc.fit == PN_FIT_VISIBLE || light->desc.fit == PN_FIT_FRUSTUM;
   light->has_visible = wanted && count > 0;
   light->visible = pn_region_empty();
-  if (!light->has_visible) return PN_OK;
-  pn_block_frame(&light->maps.block, &light->frame, gpu_of(light), 0, 0, 1, 1);
-  pn_result result = bind_block(light);
-  for (int i = 0; i < count && result == PN_OK; i++) {
+  for (int i = 0; i < count && light->has_visible; i++) {
     if (!receivers[i] || !receivers[i]->set)
       return pn_fail(gpu_of(light), PN_ERROR_NOT_READY, PN_MESSAGE_RECEIVER_UNSET, "visible receiver %d was never set", i);
-    if (light->desc.fit == PN_FIT_VISIBLE)
-      result = pn_receiver_bounds(receivers[i], &light->frame, &light->visible);
-    else
-      pn_receiver_frustum(receivers[i], &light->frame, &light->visible);
+    pn_receiver_frustum(receivers[i], &light->frame, &light->visible);
   }
+  return PN_OK;
+}
+
+/* What PN_FIT_VISIBLE looks at: the surfaces themselves. */
+static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, int count) {
+  light->visible = pn_region_empty();
+  pn_block_frame(&light->maps.block, &light->frame, gpu_of(light), 0, 0, 1, 1);
+  pn_result result = bind_block(light);
+  for (int i = 0; i < count && result == PN_OK; i++)
+    result = pn_receiver_bounds(receivers[i], &light->frame, &light->visible);
   pn_clock_mark(gpu_of(light), &light->clock, "fit");
   return result;
 }
@@ -251,9 +259,14 @@ static pn_result draw_maps(pn_light *light, const pn_maps_want *want) {
 
 static pn_result update_maps(pn_light *light, pn_receiver *const *visible, int visible_count) {
   pn_result result = check_lost(gpu_of(light));
-  if (result == PN_OK) result = find_visible(light, visible, visible_count);
+  if (result == PN_OK) result = find_frusta(light, visible, visible_count);
   if (result != PN_OK) return result;
   fit_light(light);
+  if (light->desc.fit == PN_FIT_VISIBLE && light->has_visible && !light->maps.fit.empty) {
+    result = find_surfaces(light, visible, visible_count);
+    if (result != PN_OK) return result;
+    fit_light(light);
+  }
   pn_maps_want want;
   light->technique->want(light->values, &want);
   if (!light->maps.fit.empty && pn_want_layers(&want) > 0) result = draw_maps(light, &want);
@@ -278,7 +291,8 @@ pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, 
 }
 
 pn_result pn_light_maps(const pn_light *light, pn_maps_info *out) {
-  if (!light || !out) return PN_ERROR_ARGUMENT;
+  if (!light) return PN_ERROR_ARGUMENT;
+  if (!out) return pn_fail(gpu_of(light), PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_light_maps: out is NULL");
   const pn_maps *maps = &light->maps;
   if (!maps->ready)
     return pn_fail(gpu_of(light), PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "pn_maps_update comes first");
@@ -307,13 +321,10 @@ static pn_result fill_with_light(pn_gpu *gpu, pn_attachment target, int width, i
   static const GLfloat one[4] = {1, 1, 1, 1};
   if (result == PN_OK) {
     /* The host's own texture may be larger than the view: only the view is written. */
-    GL(gpu, Enable)(GL_SCISSOR_TEST);
-    GLint box[4];
-    GL(gpu, GetIntegerv)(GL_SCISSOR_BOX, box);
-    GL(gpu, Scissor)(0, 0, width, height);
+    pn_set_switch(gpu, GL_SCISSOR_TEST, true);
+    pn_set_scissor(gpu, 0, 0, width, height);
     GL(gpu, ClearBufferfv)(GL_COLOR, 0, one);
-    GL(gpu, Scissor)(box[0], box[1], box[2], box[3]);
-    GL(gpu, Disable)(GL_SCISSOR_TEST);
+    pn_set_switch(gpu, GL_SCISSOR_TEST, false);
   }
   return result;
 }

@@ -83,11 +83,11 @@ pn_result pn_mesh_add(pn_casters *casters, const pn_mesh_desc *desc, pn_mesh *ou
   pn_gpu *gpu = gpu_of(casters);
   if (!desc || !out) return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_mesh_add: desc or out is NULL");
   out->id = 0;
+  pn_enter(casters->object.context); /* the check looks into buffers */
   pn_result result = pn_mesh_check(gpu, desc);
-  if (result != PN_OK) return result;
+  if (result != PN_OK) return pn_leave(casters->object.context, result);
   pn_mesh_data *slot = free_mesh(casters);
-  if (!slot) return PN_ERROR_OUT_OF_MEMORY;
-  pn_enter(casters->object.context);
+  if (!slot) return pn_leave(casters->object.context, PN_ERROR_OUT_OF_MEMORY);
   result = pn_mesh_build(gpu, desc, slot);
   if (result == PN_OK) out->id = slot->id = ++casters->next_id;
   casters->revision++;
@@ -135,7 +135,8 @@ pn_result pn_mesh_remove(pn_casters *casters, pn_mesh mesh) {
 /* ---- instances ---- */
 
 static pn_result check_transform(pn_gpu *gpu, const float m[16]) {
-  if (m && pn_floats_finite(m, 16) && m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1) return PN_OK;
+  if (!m) return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "the transform is NULL");
+  if (pn_floats_finite(m, 16) && m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1) return PN_OK;
   return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_INSTANCE_TRANSFORM, "a transform must be finite, its last row 0 0 0 1");
 }
 
@@ -197,7 +198,9 @@ pn_result pn_casters_draw(pn_casters *casters, int group, pn_draw_fn draw, void 
   pn_gpu *gpu = gpu_of(casters);
   pn_result result = check_group(gpu, group);
   if (result != PN_OK) return result;
-  if (draw && (!bounds || !pn_box_sound(bounds, bounds + 3)))
+  if (draw && !bounds)
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_casters_draw: bounds is NULL");
+  if (draw && (!pn_box_sound(bounds, bounds + 3)))
     return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_CASTER_BOUNDS, "a draw callback needs bounds: finite, not inverted");
   pn_callback *callback = &casters->callbacks[group];
   callback->draw = draw;

@@ -8,12 +8,24 @@
 
 static bool span_given(const pn_span *span) { return span->buffer || span->data; }
 
+/* Whether the host's buffer is as large as the span says. */
+static bool span_inside(pn_gpu *gpu, const pn_span *span, size_t element) {
+  GLint64 bytes = 0;
+  size_t stride = span->stride ? span->stride : element;
+  if (!span->buffer || span->count == 0) return true;
+  GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, span->buffer);
+  GL(gpu, GetBufferParameteri64v)(GL_ARRAY_BUFFER, GL_BUFFER_SIZE, &bytes);
+  GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, 0);
+  return (uint64_t)bytes >= span->offset + (span->count - 1) * stride + element;
+}
+
 /* A span that can be read: one source, elements that fit their stride. */
 static bool span_sound(pn_gpu *gpu, const pn_span *span, size_t element) {
   if (!span->buffer == !span->data) return false;
   if (span->buffer && !GL(gpu, IsBuffer)(span->buffer)) return false;
   if (span->stride && span->stride < element) return false;
-  return span->count <= (size_t)1 << 31 && span->offset <= (size_t)1 << 40 && span->stride <= (size_t)1 << 20;
+  return span->count <= (size_t)1 << 31 && span->offset <= (size_t)1 << 40 && span->stride <= (size_t)1 << 20 &&
+         span_inside(gpu, span, element);
 }
 
 static pn_result check_indices(pn_gpu *gpu, const pn_mesh_desc *d) {

@@ -106,6 +106,9 @@ static void read_capabilities(pn_gpu *gpu) {
   can->clip_control = function && (can->version >= 45 || has_extension(gpu, "GL_ARB_clip_control"));
   function = !gpu->desc.get_proc_address || gpu->storage.GetGraphicsResetStatus;
   can->robustness = function && can->version >= 45;
+  function = !gpu->desc.get_proc_address || (gpu->storage.ViewportIndexedf && gpu->storage.DepthRangeIndexed &&
+                                             gpu->storage.ScissorIndexed);
+  can->viewports = function && can->version >= 41;
   can->fixed_restart = can->version >= 43;
   GL(gpu, GetIntegerv)(GL_MAX_TEXTURE_SIZE, &can->texture_size_max);
   GL(gpu, GetIntegerv)(GL_MAX_ARRAY_TEXTURE_LAYERS, &can->layers_max);
@@ -157,7 +160,7 @@ static void make_shared_objects(pn_gpu *gpu) {
   GL(gpu, GenFramebuffers)(1, &gpu->read_framebuffer);
   GL(gpu, GenSamplers)(1, &gpu->sampler_nearest);
   static const GLenum parameters[][2] = {
-      {GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST}, {GL_TEXTURE_MAG_FILTER, GL_NEAREST},
+      {GL_TEXTURE_MIN_FILTER, GL_NEAREST}, {GL_TEXTURE_MAG_FILTER, GL_NEAREST},
       {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE},              {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE},
       {GL_TEXTURE_COMPARE_MODE, GL_NONE},
   };
@@ -166,7 +169,14 @@ static void make_shared_objects(pn_gpu *gpu) {
 }
 
 static pn_result copy_strings(pn_gpu *gpu) {
+  if ((int)gpu->desc.state < PN_STATE_RESTORE || gpu->desc.state > PN_STATE_RESET)
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_STATE_SCOPE, "state mode %d is unknown", (int)gpu->desc.state);
   if (!gpu->desc.shader_directory) return PN_OK;
+  FILE *directory = fopen(gpu->desc.shader_directory, "r");
+  if (!directory)
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_SHADER_DIRECTORY, "cannot read the shader directory %s",
+                   gpu->desc.shader_directory);
+  fclose(directory);
   size_t bytes = strlen(gpu->desc.shader_directory) + 1;
   gpu->shader_directory = pn_reallocate(gpu, NULL, bytes);
   if (!gpu->shader_directory) return PN_ERROR_OUT_OF_MEMORY;

@@ -23,6 +23,7 @@ typedef struct {
   int version;         /* 33, 45, 46 */
   bool software;
   bool compatibility;  /* a compatibility profile: some state exists only there */
+  bool viewports;      /* 4.1: one viewport, depth range and scissor test for each index */
   bool clip_control;   /* 4.5 or ARB_clip_control */
   bool robustness;     /* GetGraphicsResetStatus works */
   bool fixed_restart;  /* GL_PRIMITIVE_RESTART_FIXED_INDEX, 4.3 */

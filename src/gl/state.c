@@ -12,18 +12,46 @@ static const GLenum switches[] = {
 enum { SWITCH_COUNT = sizeof switches / sizeof *switches };
 _Static_assert((int)SWITCH_COUNT == (int)PN_SWITCHES, "pn_gl_state.enabled has one entry for each switch");
 
-static const GLenum pack_names[4] = {GL_PACK_ALIGNMENT, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS};
-static const GLenum unpack_names[4] = {GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS,
-                                       GL_UNPACK_SKIP_PIXELS};
-static const GLint pixel_defaults[4] = {4, 0, 0, 0};
+enum { PIXEL_NAMES = 5 };
+static const GLenum pack_names[PIXEL_NAMES] = {GL_PACK_ALIGNMENT, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
+                                               GL_PACK_SKIP_PIXELS, GL_PACK_SWAP_BYTES};
+static const GLenum unpack_names[PIXEL_NAMES] = {GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS,
+                                                 GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SWAP_BYTES};
+static const GLint pixel_defaults[PIXEL_NAMES] = {4, 0, 0, 0, 0};
 
 static int least(int a, int b) { return a < b ? a : b; }
 static int switch_count(const pn_gpu *gpu) { return gpu->can.fixed_restart ? SWITCH_COUNT : SWITCH_COUNT - 1; }
 static int draw_buffers(const pn_gpu *gpu) { return least(gpu->can.draw_buffers, PN_DRAW_BUFFERS_SAVED); }
 static int clip_distances(const pn_gpu *gpu) { return least(gpu->can.clip_distances, PN_CLIP_DISTANCES_SAVED); }
 
-static void enable(pn_gpu *gpu, GLenum name, bool on) {
-  if (on)
+void pn_set_viewport(pn_gpu *gpu, int x, int y, int width, int height) {
+  if (gpu->can.viewports)
+    GL(gpu, ViewportIndexedf)(0, (GLfloat)x, (GLfloat)y, (GLfloat)width, (GLfloat)height);
+  else
+    GL(gpu, Viewport)(x, y, width, height);
+}
+
+void pn_set_depth_range(pn_gpu *gpu, double near, double far) {
+  if (gpu->can.viewports)
+    GL(gpu, DepthRangeIndexed)(0, near, far);
+  else
+    GL(gpu, DepthRange)(near, far);
+}
+
+void pn_set_scissor(pn_gpu *gpu, int x, int y, int width, int height) {
+  if (gpu->can.viewports)
+    GL(gpu, ScissorIndexed)(0, x, y, width, height);
+  else
+    GL(gpu, Scissor)(x, y, width, height);
+}
+
+void pn_set_switch(pn_gpu *gpu, GLenum name, bool on) {
+  bool indexed = gpu->can.viewports && name == GL_SCISSOR_TEST;
+  if (indexed && on)
+    GL(gpu, Enablei)(name, 0);
+  else if (indexed)
+    GL(gpu, Disablei)(name, 0);
+  else if (on)
     GL(gpu, Enable)(name);
   else
     GL(gpu, Disable)(name);
@@ -57,9 +85,12 @@ static void save_textures(pn_gpu *gpu, pn_gl_state *state) {
 
 static void save_raster(pn_gpu *gpu, pn_gl_state *state) {
   GL(gpu, GetIntegerv)(GL_VIEWPORT, state->viewport);
+  GL(gpu, GetIntegerv)(GL_SCISSOR_BOX, state->scissor);
+  GL(gpu, GetIntegerv)(GL_CLAMP_READ_COLOR, &state->clamp_read);
   GL(gpu, GetIntegerv)(GL_DEPTH_FUNC, &state->depth_func);
   GL(gpu, GetIntegerv)(GL_CULL_FACE_MODE, &state->cull_face);
   GL(gpu, GetIntegerv)(GL_FRONT_FACE, &state->front_face);
+  GL(gpu, GetIntegerv)(GL_PROVOKING_VERTEX, &state->provoking_vertex);
   /* Core contexts answer one value, compatibility contexts two. */
   GL(gpu, GetIntegerv)(GL_POLYGON_MODE, state->polygon_mode);
   GL(gpu, GetBooleanv)(GL_DEPTH_WRITEMASK, &state->depth_mask);
@@ -81,7 +112,7 @@ void pn_state_save(pn_gpu *gpu, pn_gl_state *state) {
   save_bindings(gpu, state);
   save_textures(gpu, state);
   save_raster(gpu, state);
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < PIXEL_NAMES; i++) {
     GL(gpu, GetIntegerv)(pack_names[i], &state->pack[i]);
     GL(gpu, GetIntegerv)(unpack_names[i], &state->unpack[i]);
   }
@@ -104,11 +135,16 @@ static void restore_bindings(pn_gpu *gpu, const pn_gl_state *state) {
   GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, (GLuint)state->pixel_unpack);
 }
 
+/* What the call deleted while it was bound stays unbound, as GL has it. */
+static GLuint living(pn_gpu *gpu, GLint texture) {
+  return texture && GL(gpu, IsTexture)((GLuint)texture) ? (GLuint)texture : 0;
+}
+
 static void restore_textures(pn_gpu *gpu, const pn_gl_state *state) {
   for (int unit = 0; unit < PN_UNIT_COUNT; unit++) {
     GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);
-    GL(gpu, BindTexture)(GL_TEXTURE_2D, (GLuint)state->texture_2d[unit]);
-    GL(gpu, BindTexture)(GL_TEXTURE_2D_ARRAY, (GLuint)state->texture_array[unit]);
+    GL(gpu, BindTexture)(GL_TEXTURE_2D, living(gpu, state->texture_2d[unit]));
+    GL(gpu, BindTexture)(GL_TEXTURE_2D_ARRAY, living(gpu, state->texture_array[unit]));
     GL(gpu, BindTexture)(GL_TEXTURE_2D_MULTISAMPLE, (GLuint)state->texture_multisample[unit]);
     GL(gpu, BindSampler)((GLuint)unit, (GLuint)state->sampler[unit]);
   }
@@ -116,10 +152,13 @@ static void restore_textures(pn_gpu *gpu, const pn_gl_state *state) {
 }
 
 static void restore_raster(pn_gpu *gpu, const pn_gl_state *state) {
-  GL(gpu, Viewport)(state->viewport[0], state->viewport[1], state->viewport[2], state->viewport[3]);
+  pn_set_scissor(gpu, state->scissor[0], state->scissor[1], state->scissor[2], state->scissor[3]);
+  GL(gpu, ClampColor)(GL_CLAMP_READ_COLOR, (GLenum)state->clamp_read);
+  pn_set_viewport(gpu, state->viewport[0], state->viewport[1], state->viewport[2], state->viewport[3]);
   GL(gpu, DepthFunc)((GLenum)state->depth_func);
   GL(gpu, CullFace)((GLenum)state->cull_face);
   GL(gpu, FrontFace)((GLenum)state->front_face);
+  GL(gpu, ProvokingVertex)((GLenum)state->provoking_vertex);
   if (gpu->can.compatibility) {
     GL(gpu, PolygonMode)(GL_FRONT, (GLenum)state->polygon_mode[0]);
     GL(gpu, PolygonMode)(GL_BACK, (GLenum)state->polygon_mode[1]);
@@ -127,7 +166,7 @@ static void restore_raster(pn_gpu *gpu, const pn_gl_state *state) {
     GL(gpu, PolygonMode)(GL_FRONT_AND_BACK, (GLenum)state->polygon_mode[0]);
   }
   GL(gpu, DepthMask)(state->depth_mask);
-  GL(gpu, DepthRange)(state->depth_range[0], state->depth_range[1]);
+  pn_set_depth_range(gpu, state->depth_range[0], state->depth_range[1]);
   GL(gpu, ClearDepth)(state->clear_depth);
   if (gpu->can.clip_control) GL(gpu, ClipControl)((GLenum)state->clip_origin, (GLenum)state->clip_depth);
   for (int i = 0; i < draw_buffers(gpu); i++) {
@@ -138,15 +177,15 @@ static void restore_raster(pn_gpu *gpu, const pn_gl_state *state) {
     else
       GL(gpu, Disablei)(GL_BLEND, (GLuint)i);
   }
-  for (int i = 0; i < clip_distances(gpu); i++) enable(gpu, GL_CLIP_DISTANCE0 + (GLenum)i, state->clip[i]);
-  for (int i = 0; i < switch_count(gpu); i++) enable(gpu, switches[i], state->enabled[i]);
+  for (int i = 0; i < clip_distances(gpu); i++) pn_set_switch(gpu, GL_CLIP_DISTANCE0 + (GLenum)i, state->clip[i]);
+  for (int i = 0; i < switch_count(gpu); i++) pn_set_switch(gpu, switches[i], state->enabled[i]);
 }
 
 void pn_state_restore(pn_gpu *gpu, const pn_gl_state *state) {
   restore_bindings(gpu, state);
   restore_textures(gpu, state);
   restore_raster(gpu, state);
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < PIXEL_NAMES; i++) {
     GL(gpu, PixelStorei)(pack_names[i], state->pack[i]);
     GL(gpu, PixelStorei)(unpack_names[i], state->unpack[i]);
   }
@@ -155,20 +194,22 @@ void pn_state_restore(pn_gpu *gpu, const pn_gl_state *state) {
 static void reset_pixels(pn_gpu *gpu) {
   GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
   GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, 0);
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < PIXEL_NAMES; i++) {
     GL(gpu, PixelStorei)(pack_names[i], pixel_defaults[i]);
     GL(gpu, PixelStorei)(unpack_names[i], pixel_defaults[i]);
   }
 }
 
 void pn_state_neutral(pn_gpu *gpu) {
-  for (int i = 0; i < switch_count(gpu); i++) GL(gpu, Disable)(switches[i]);
+  for (int i = 0; i < switch_count(gpu); i++) pn_set_switch(gpu, switches[i], false);
   for (int i = 0; i < clip_distances(gpu); i++) GL(gpu, Disable)(GL_CLIP_DISTANCE0 + (GLenum)i);
   GL(gpu, Disable)(GL_BLEND);
   GL(gpu, ColorMask)(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   GL(gpu, DepthMask)(GL_FALSE);
   GL(gpu, DepthFunc)(GL_LESS);
-  GL(gpu, DepthRange)(0, 1);
+  pn_set_depth_range(gpu, 0, 1);
+  GL(gpu, ProvokingVertex)(GL_LAST_VERTEX_CONVENTION);
+  GL(gpu, ClampColor)(GL_CLAMP_READ_COLOR, GL_FIXED_ONLY);
   GL(gpu, PolygonMode)(GL_FRONT_AND_BACK, GL_FILL);
   GL(gpu, FrontFace)(GL_CCW);
   GL(gpu, CullFace)(GL_BACK);

@@ -12,16 +12,22 @@ typedef struct {
   GLint64 block_start, block_size;
   GLint active_texture, texture_2d[PN_UNIT_COUNT], texture_array[PN_UNIT_COUNT], texture_multisample[PN_UNIT_COUNT],
       sampler[PN_UNIT_COUNT];
-  GLint viewport[4];
+  GLint viewport[4], scissor[4], clamp_read;
   GLboolean color_mask[PN_DRAW_BUFFERS_SAVED][4], depth_mask, blend[PN_DRAW_BUFFERS_SAVED];
-  GLint depth_func, cull_face, front_face, polygon_mode[2];
+  GLint depth_func, cull_face, front_face, polygon_mode[2], provoking_vertex;
   GLdouble depth_range[2], clear_depth;
   GLint clip_origin, clip_depth;
-  GLint pack[4]; /* alignment, row length, skip rows, skip pixels */
-  GLint unpack[4];
+  GLint pack[5]; /* alignment, row length, skip rows, skip pixels, swap bytes */
+  GLint unpack[5];
   GLboolean clip[PN_CLIP_DISTANCES_SAVED];
   GLboolean enabled[PN_SWITCHES];
 } pn_gl_state;
+
+/* Viewport, depth range and switches of index 0 only: the host may use the others, and no shader of ours does. */
+void pn_set_viewport(pn_gpu *gpu, int x, int y, int width, int height);
+void pn_set_depth_range(pn_gpu *gpu, double near, double far);
+void pn_set_scissor(pn_gpu *gpu, int x, int y, int width, int height);
+void pn_set_switch(pn_gpu *gpu, GLenum name, bool on);
 
 void pn_state_save(pn_gpu *gpu, pn_gl_state *state);
 void pn_state_restore(pn_gpu *gpu, const pn_gl_state *state);

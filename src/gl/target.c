@@ -159,7 +159,7 @@ static void set_depth(pn_gpu *gpu, const pn_pass *pass) {
   GL(gpu, Enable)(GL_DEPTH_TEST);
   GL(gpu, DepthMask)(GL_TRUE);
   if (pass->depth_clamp) GL(gpu, Enable)(GL_DEPTH_CLAMP);
-  if (pass->depth_range[1] > 0) GL(gpu, DepthRange)(pass->depth_range[0], pass->depth_range[1]);
+  if (pass->depth_range[1] > 0) pn_set_depth_range(gpu, pass->depth_range[0], pass->depth_range[1]);
   if (pass->depth_use == PN_DEPTH_WRITE) {
     GL(gpu, DepthFunc)(GL_ALWAYS);
     return;
@@ -174,7 +174,7 @@ pn_result pn_pass_begin(pn_gpu *gpu, const pn_pass *pass) {
   pn_state_neutral(gpu);
   pn_result result = attach_all(gpu, pass);
   if (result != PN_OK) return result;
-  GL(gpu, Viewport)(0, 0, pass->width, pass->height);
+  pn_set_viewport(gpu, 0, 0, pass->width, pass->height);
   set_depth(gpu, pass);
   if (pass->faces == PN_FACES_FRONT || pass->faces == PN_FACES_BACK) {
     GL(gpu, Enable)(GL_CULL_FACE);

@@ -69,7 +69,7 @@ static void copy_layer(const drawing *d, const pn_texture *from, int layer) {
   GL(gpu, ReadBuffer)(GL_NONE);
   GL(gpu, BindFramebuffer)(GL_DRAW_FRAMEBUFFER, gpu->framebuffer);
   GL(gpu, FramebufferTextureLayer)(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, to.texture, 0, to.layer);
-  GL(gpu, Disable)(GL_SCISSOR_TEST);
+  pn_set_switch(gpu, GL_SCISSOR_TEST, false);
   GL(gpu, BlitFramebuffer)
   (0, 0, from->width, from->height, 0, 0, from->width, from->height, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
 }

@@ -22,9 +22,7 @@ void main() {
       ivec2 at = base + ivec2(x, y);
 #if PN_FIRST
       if (!pn_view_has(at) || !pn_receives(at)) continue;
-      vec3 p;
-      vec3 error;
-      pn_position(at, pn_depth_at(at), p, error);
+      vec3 p = pn_point(at, pn_depth_at(at));
       if (!pn_is_sun(0) && p.z <= 0.0) continue;
       vec3 m = pn_map_point(p, pn_is_sun(0));
       least = vec4(min(least.xyz, m), 1.0);

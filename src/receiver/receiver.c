@@ -40,6 +40,7 @@ void pn_receiver_destroy(pn_receiver **receiver) {
 typedef struct {
   int depth_bits, stencil_bits, samples;
   bool is_float;
+  float at[2]; /* where in a pixel its depth was taken */
 } source_kind;
 
 static GLint attachment_parameter(pn_gpu *gpu, GLenum target, GLenum point, GLenum name) {
@@ -56,6 +57,13 @@ static bool read_kind(pn_gpu *gpu, GLenum target, GLenum point, source_kind *kin
   return kind->depth_bits > 0;
 }
 
+/* Of the draw framebuffer: sample 0 lies beside the pixel's centre. */
+static void read_samples(pn_gpu *gpu, source_kind *kind) {
+  kind->at[0] = kind->at[1] = 0.5f;
+  GL(gpu, GetIntegerv)(GL_SAMPLES, &kind->samples);
+  if (kind->samples > 0) GL(gpu, GetMultisamplefv)(GL_SAMPLE_POSITION, 0, kind->at);
+}
+
 /* GL 3.3 cannot ask a texture for its target, and binding it to the wrong one is an error; attaching it to a framebuffer tells what is needed. */
 static pn_result inspect_texture(pn_gpu *gpu, pn_gl texture, source_kind *kind) {
   static const char *const wrong = "the depth texture is no 2D or 2D multisample texture with depth";
@@ -70,7 +78,7 @@ static pn_result inspect_texture(pn_gpu *gpu, pn_gl texture, source_kind *kind) 
   bool sound = GL(gpu, CheckFramebufferStatus)(GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE &&
                read_kind(gpu, GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, kind) &&
                !attachment_parameter(gpu, GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_FRAMEBUFFER_ATTACHMENT_LAYERED);
-  if (sound) GL(gpu, GetIntegerv)(GL_SAMPLES, &kind->samples);
+  if (sound) read_samples(gpu, kind);
   GL(gpu, FramebufferTexture2D)(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, 0, 0);
   return sound ? PN_OK : pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_DEPTH, "%s", wrong);
 }
@@ -84,6 +92,8 @@ static pn_result inspect_framebuffer(pn_gpu *gpu, pn_gl framebuffer, source_kind
   if (status != GL_FRAMEBUFFER_COMPLETE || !read_kind(gpu, GL_READ_FRAMEBUFFER, point, kind))
     return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_DEPTH, "framebuffer %u is incomplete or has no depth",
                    framebuffer);
+  GL(gpu, BindFramebuffer)(GL_DRAW_FRAMEBUFFER, framebuffer);
+  read_samples(gpu, kind);
   return PN_OK;
 }
 
@@ -146,6 +156,17 @@ static pn_result check_companion(pn_gpu *gpu, const pn_receiver_desc *d, pn_gl t
   return pn_fail(gpu, PN_ERROR_ARGUMENT, message, "the %s texture, %d x %d, does not cover the view", name, width, height);
 }
 
+/* Normals are colours. */
+static pn_result check_normals(pn_gpu *gpu, const pn_receiver_desc *d) {
+  if (!d->normal_texture) return PN_OK;
+  GLint bits = 0;
+  GL(gpu, BindTexture)(GL_TEXTURE_2D, d->normal_texture);
+  GL(gpu, GetTexLevelParameteriv)(GL_TEXTURE_2D, 0, GL_TEXTURE_RED_SIZE, &bits);
+  GL(gpu, BindTexture)(GL_TEXTURE_2D, 0);
+  if (bits > 0) return PN_OK;
+  return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_NORMAL, "the normal texture has no colours");
+}
+
 /* Angle by which a normal of that texture may be off, radians. */
 static float normal_error(pn_gpu *gpu, const pn_receiver_desc *d) {
   GLint bits = 0, type = 0;
@@ -161,12 +182,13 @@ static float normal_error(pn_gpu *gpu, const pn_receiver_desc *d) {
 
 /* ---- matrices ---- */
 
-static bool invert_view(const pn_receiver_desc *d, pn_matrix *scene_from_clip, pn_matrix *scene_from_pixel) {
+static bool invert_view(const pn_receiver_desc *d, const float at[2], pn_matrix *scene_from_clip, pn_matrix *scene_from_pixel) {
   pn_matrix view = pn_matrix_from_floats(d->view), projection = pn_matrix_from_floats(d->projection);
   pn_matrix clip_from_scene = pn_matrix_multiply(&projection, &view);
   if (!pn_matrix_invert(&clip_from_scene, scene_from_clip)) return false;
   double depth = d->depth_zero_to_one ? 1 : 2;
-  pn_matrix clip_from_pixel = {{2.0 / d->width, 0, 0, 0, 0, 2.0 / d->height, 0, 0, 0, 0, depth, 0, -1, -1, 1 - depth, 1}};
+  double x = 2 * (at[0] - 0.5) / d->width - 1, y = 2 * (at[1] - 0.5) / d->height - 1;
+  pn_matrix clip_from_pixel = {{2.0 / d->width, 0, 0, 0, 0, 2.0 / d->height, 0, 0, 0, 0, depth, 0, x, y, 1 - depth, 1}};
   *scene_from_pixel = pn_matrix_multiply(scene_from_clip, &clip_from_pixel);
   return true;
 }
@@ -230,8 +252,9 @@ static pn_result set_receiver(pn_receiver *receiver, pn_receiver_desc d) {
   if (result == PN_OK) result = check_view(gpu, &d, target);
   if (result == PN_OK) result = check_companion(gpu, &d, d.normal_texture, PN_MESSAGE_RECEIVER_NORMAL, "normal");
   if (result == PN_OK) result = check_companion(gpu, &d, d.mask_texture, PN_MESSAGE_RECEIVER_MASK, "mask");
+  if (result == PN_OK) result = check_normals(gpu, &d);
   pn_matrix scene_from_clip, scene_from_pixel;
-  if (result == PN_OK && !invert_view(&d, &scene_from_clip, &scene_from_pixel))
+  if (result == PN_OK && !invert_view(&d, kind.at, &scene_from_clip, &scene_from_pixel))
     result = pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX, "projection times view has no inverse");
   if (result != PN_OK) return result;
   bool multisample = d.depth_texture && kind.samples > 0;

@@ -39,6 +39,11 @@ bool pn_receives(ivec2 pixel) {
 
 float pn_depth_error(float depth) { return max(pn_quantum.x, pn_quantum.y * abs(depth)); }
 
+vec3 pn_point(ivec2 pixel, float depth) {
+  vec4 h = pn_light_from_pixel * vec4(vec2(pixel) + 0.5, depth, 1.0);
+  return h.xyz / h.w;
+}
+
 void pn_position(ivec2 pixel, float depth, out vec3 p, out vec3 error) {
   vec4 v = vec4(vec2(pixel) + 0.5, depth, 1.0);
   vec4 h = pn_light_from_pixel * v;
@@ -73,7 +78,9 @@ vec2 pn_slope(ivec2 pixel, ivec2 axis, float d0) {
     return wide ? vec2(0.25 * (d[4] - d[0]), 0.5 * q) : vec2(0.5 * (d[3] - d[1]), q);
   }
   if (!has[1] && !has[3]) return vec2(0.0, 0.0); // a surface one pixel wide: as if it faced the camera
-  return left < right ? vec2(d0 - d[1], 2.0 * q) : vec2(d[3] - d0, 2.0 * q);
+  // Where neither side goes on straight, faces are two pixels wide or less: the slope stays open by as much as it bends.
+  float open = min(left, right) > 4.0 * q ? min(left, right) : 0.0;
+  return left < right ? vec2(d0 - d[1], 2.0 * q + open) : vec2(d[3] - d0, 2.0 * q + open);
 }
 
 void pn_tangent_plane(ivec2 pixel, float depth, out vec3 n, out float sigma) {

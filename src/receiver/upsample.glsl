@@ -24,10 +24,7 @@ float pn_upsampled(ivec2 pixel) {
   vec2 low = (vec2(pixel) - float(pn_offset.w)) / scale;
   ivec2 base = ivec2(floor(low));
   vec2 f = low - vec2(base);
-  vec3 next;
-  vec3 next_error;
-  pn_position(pixel + ivec2(1, 0), pn_depth_at(pixel), next, next_error);
-  float pixel_size = length(next - s.p);
+  float pixel_size = length(pn_point(pixel + ivec2(1, 0), pn_depth_at(pixel)) - s.p);
   ivec2 size = textureSize(pn_work, 0);
   float sum = 0.0, weights = 0.0, least = 1.0, most = 0.0;
   for (int i = 0; i < 4; i++) {

@@ -12,7 +12,7 @@ extern const char *const pn_hierarchy_names[];
 typedef struct {
   pn_primitive primitive;
   pn_hierarchy hierarchy;
-  bool gaps;
+  bool gaps, edges;
   double merge;
   int merge_index, cap_index; /* places in the technique's table */
 } pn_search_values;

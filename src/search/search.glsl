@@ -2,6 +2,7 @@
 // before this file: pn_Cover, pn_cover_rectangle, pn_cover_quad, pn_cover_or_ask, pn_is_full, and the macros
 //   PN_PRIMITIVE  what a texel stands for, see primitive.glsl
 //   PN_GAPS       patches are widened to meet their left and lower neighbours
+//   PN_EDGES      quads that lack a corner are covered by the parts that belong to the others
 //   PN_DESCENT    1: adaptive descent of the range pyramid; 0: every texel of the window, or of a coarser level past the cap
 //   PN_REFINE     what narrows the window first: 0 nothing, 1 the range pyramid, 2 the range stack
 #include "search/window.glsl"
@@ -66,20 +67,68 @@ void pn_texel_patch(int light, highp sampler2DArray maps, pn_Receiver r, int map
   pn_search_done.z += 1.0;
 }
 
-// The quad from this texel's centre to that of its right upper neighbour: only where all four corners hide light (section 4). Four at a time: no loop.
-void pn_texel_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 texel, inout pn_Cover c) {
-  vec4 dw = vec4(pn_map_fetch(light, maps, map, layer, texel), pn_map_fetch(light, maps, map, layer, texel + ivec2(1, 0)),
-                 pn_map_fetch(light, maps, map, layer, texel + ivec2(0, 1)), pn_map_fetch(light, maps, map, layer, texel + 1)) - r.m.z;
-  vec2 low = pn_map_st(light, map, vec2(texel) + 0.5) - r.m.xy, high = pn_map_st(light, map, vec2(texel) + 1.5) - r.m.xy;
+#if PN_PRIMITIVE != PN_PATCH
+// A quad, or a block of quads taken as one, seen from the receiver: its corners in the order (0, 0), (1, 0), (0, 1), (1, 1), and the
+// rectangle through the middles of its edges (section 4). Corners keep their own w, so that neighbours meet.
+struct pn_Quad {
+  vec4 x, y;      // corners on the light
+  vec2 low, high; // the rectangle
+  bool whole;     // all four corners hide light: the paper's condition
+  bool some;      // with PN_EDGES: those that do have their parts of the rectangle
+};
+
+// The middle of two ends along one axis, as far as their corners hide: half a cell where one side has none.
+vec2 pn_edge(float scale, float near, float far, vec2 weight, vec2 inverse) {
+  float middle = 0.5 * (near + far);
+  vec2 at = 0.5 + scale * vec2(weight.x > 0.0 ? near * inverse.x : middle * inverse.y,
+                               weight.y > 0.0 ? far * inverse.y : middle * inverse.x);
+  return vec2(min(at.x, at.y), max(at.x, at.y));
+}
+
+pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 first, ivec2 last) {
+  int array_layer = map * pn_map_layers(light) + layer;
+  ivec2 size = pn_map_size(light), end = min(last, size - 1);
+  vec4 depth = vec4(texelFetch(maps, ivec3(first, array_layer), 0).r, texelFetch(maps, ivec3(end.x, first.y, array_layer), 0).r,
+                    texelFetch(maps, ivec3(first.x, end.y, array_layer), 0).r, texelFetch(maps, ivec3(end, array_layer), 0).r);
+  vec2 w_of_depth = pn_lights[light].map_depth[map].xy;
+  vec4 dw = w_of_depth.x + w_of_depth.y * depth - r.m.z;
+  vec2 low = pn_map_st(light, map, vec2(first) + 0.5) - r.m.xy, high = pn_map_st(light, map, vec2(last) + 0.5) - r.m.xy;
   vec4 s = vec4(low.x, high.x, low.x, high.x), t = vec4(low.y, low.y, high.y, high.y);
-  vec4 front = r.n.x * s + r.n.y * t - r.k * dw;
-  vec4 slack = r.epsilon_plane + r.sigma * (abs(s) + abs(t) + r.reach * abs(dw));
-  if (any(lessThanEqual(dw, vec4(r.epsilon_w))) || any(lessThanEqual(front, slack))) return;
+  vec4 front = r.n.x * s + r.n.y * t - r.k * dw - r.epsilon_plane - r.sigma * (abs(s) + abs(t) + r.reach * abs(dw));
+  bvec4 outside = bvec4(false, last.x >= size.x, last.y >= size.y, last.x >= size.x || last.y >= size.y);
+  vec4 there = vec4(greaterThan(dw, vec4(r.epsilon_w))) * vec4(lessThan(depth, vec4(1.0))) * vec4(greaterThan(depth, vec4(0.0))) *
+               (1.0 - vec4(outside));
+  vec4 hide = there * vec4(greaterThan(front, vec4(0.0)));
+  pn_Quad q;
+  q.whole = hide == vec4(1.0);
+  // A single corner stands for its quarter of the cell, as a patch would, and like one must rise above what a crease may be.
+  vec2 cell = high - low;
+  vec4 rise = min(max(abs(s), abs(t)), vec4(max(cell.x, cell.y)));
+  if (!q.whole) hide *= vec4(greaterThan(front, rise));
+  q.some = q.whole || (PN_EDGES != 0 && hide != vec4(0.0));
+  vec4 inverse = 1.0 / max(dw, vec4(1e-30));
   vec2 scale = 0.5 / pn_extent(light);
-  vec4 x = 0.5 + scale.x * s / dw, y = 0.5 + scale.y * t / dw;
-  pn_cover_quad(c, vec2(x.x, y.x), vec2(x.y, y.y), vec2(x.z, y.z), vec2(x.w, y.w));
+  q.x = 0.5 + scale.x * s * inverse;
+  q.y = 0.5 + scale.y * t * inverse;
+  vec4 hidden = hide * inverse;
+  vec2 columns = hide.xy + hide.zw, rows = hide.xz + hide.yw;
+  vec2 along_x = pn_edge(scale.x, low.x, high.x, columns, (hidden.xy + hidden.zw) / max(columns, vec2(1.0)));
+  vec2 along_y = pn_edge(scale.y, low.y, high.y, rows, (hidden.xz + hidden.yw) / max(rows, vec2(1.0)));
+  q.low = vec2(along_x.x, along_y.x);
+  q.high = vec2(along_x.y, along_y.y);
+  return q;
+}
+
+void pn_texel_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 texel, inout pn_Cover c) {
+  pn_Quad q = pn_quad(light, maps, r, map, layer, texel, texel + 1);
+  if (!q.some) return;
+  if (q.whole)
+    pn_cover_quad(c, vec2(q.x.x, q.y.x), vec2(q.x.y, q.y.y), vec2(q.x.z, q.y.z), vec2(q.x.w, q.y.w));
+  else
+    pn_cover_rectangle(c, q.low, q.high);
   pn_search_done.z += 1.0;
 }
+#endif
 
 void pn_texel_primitive(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 texel, inout pn_Cover c) {
 #if PN_PRIMITIVE == PN_PATCH
@@ -236,30 +285,6 @@ void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, p
 
 struct pn_Rectangle { vec2 low, high; }; // on the light, 0 to 1
 
-#if PN_PRIMITIVE != PN_PATCH
-// A block of quads as one: the rectangle through the middles of its edges, its corners at their own w, so that neighbouring blocks meet. hides: whether all
-// four corners lie in front of the receiver's plane. Only for blocks without an empty texel; of others the answer means nothing.
-pn_Rectangle pn_block_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 first, ivec2 last, out bool hides) {
-  int array_layer = map * pn_map_layers(light) + layer;
-  ivec2 end = min(last, pn_map_size(light) - 1);
-  vec4 depth = vec4(texelFetch(maps, ivec3(first, array_layer), 0).r, texelFetch(maps, ivec3(end.x, first.y, array_layer), 0).r,
-                    texelFetch(maps, ivec3(first.x, end.y, array_layer), 0).r, texelFetch(maps, ivec3(end, array_layer), 0).r);
-  vec2 w_of_depth = pn_lights[light].map_depth[map].xy;
-  vec4 dw = w_of_depth.x + w_of_depth.y * depth - r.m.z;
-  vec2 low = pn_map_st(light, map, vec2(first) + 0.5) - r.m.xy, high = pn_map_st(light, map, vec2(last) + 0.5) - r.m.xy;
-  vec4 s = vec4(low.x, high.x, low.x, high.x), t = vec4(low.y, low.y, high.y, high.y);
-  vec4 front = r.n.x * s + r.n.y * t - r.k * dw;
-  vec4 slack = r.epsilon_plane + r.sigma * (abs(s) + abs(t) + r.reach * abs(dw));
-  hides = all(greaterThan(front, slack));
-  vec2 scale = 0.5 / pn_extent(light);
-  vec4 far = 1.0 / dw;
-  vec4 x = 0.5 + scale.x * s * far, y = 0.5 + scale.y * t * far;
-  vec2 along_x = 0.5 * (x.xy + x.zw), along_y = 0.5 * (y.xz + y.yw);
-  return pn_Rectangle(vec2(min(along_x.x, along_x.y), min(along_y.x, along_y.y)),
-                      vec2(max(along_x.x, along_x.y), max(along_y.x, along_y.y)));
-}
-#endif
-
 // One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Only one field is made: of the rectangle that the block
 // becomes, or, when it does not become one, of what it could hide at most.
 int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, ivec2 node, int level,
@@ -290,17 +315,19 @@ int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray ra
 #if PN_PRIMITIVE == PN_PATCH
   pn_Rectangle as_one = pn_Rectangle(0.5 * (a0 + a1), 0.5 * (b0 + b1));
 #else
-  bool hides;
-  pn_Rectangle as_one = pn_block_quad(light, maps, r, map, layer, node << level, (node + 1) << level, hides);
+  pn_Quad quad = pn_quad(light, maps, r, map, layer, node << level, (node + 1) << level);
+  pn_Rectangle as_one = pn_Rectangle(quad.low, quad.high);
 #if PN_PRIMITIVE == PN_QUAD
-  one = one || level == 0 && hides && dw.y > r.epsilon_w;
+  one = one || level == 0 && quad.some;
+#else
+  one = one || level == 0 && quad.some && !quad.whole;
 #endif
 #endif
   if (one) most = as_one;
   bool done = pn_cover_or_ask(c, most.low, most.high, one);
   if (one) pn_search_done.z += 1.0;
 #if PN_PRIMITIVE == PN_QUAD_EXACT
-  if (!done && level == 0 && hides && dw.y > r.epsilon_w) return PN_LEAF_QUAD;
+  if (!done && level == 0 && quad.whole) return PN_LEAF_QUAD;
 #endif
   return done || level == 0 ? PN_SKIP : PN_DOWN;
 }

@@ -119,7 +119,7 @@ static int find_parameter(const pn_technique *t, const char *name) {
 static pn_result read_pair(const pn_technique *t, char *pair, double *values, const explanation *e) {
   char list[256], named[128];
   char *value = strchr(pair, '=');
-  if (!value) return explain(e, "technique %s: '%s' is not key=value", t->name, pair);
+  if (!value) return explain(e, "technique %s: parameter '%s' is not key=value", t->name, pair);
   *value++ = 0;
   int index = find_parameter(t, pair);
   snprintf(named, sizeof named, "technique %s: parameter '%.60s'", t->name, pair);

@@ -1,7 +1,7 @@
 #include "search/parameters.h"
 #include "techniques/technique.h"
 
-enum { PRESET, PRIMITIVE, GAPS, LAYERS, HIERARCHY, CAP, MERGE, COUNT };
+enum { PRESET, PRIMITIVE, GAPS, LAYERS, HIERARCHY, CAP, MERGE, EDGES, COUNT };
 
 static const char *const presets[] = {"fast", "good", "exact", NULL};
 static const char *const primitives[] = {"patch", "quad", NULL};
@@ -20,6 +20,8 @@ static const pn_parameter parameters[COUNT] = {
              "Guennebaud et al. 2006", PN_INT, 0, 4096, 0, NULL},
     [MERGE] = {"merge", "%", "blocks are one primitive where that moves no edge by more than this part of the light; 0 = every texel", "",
                PN_FLOAT, 0, 50, 1, NULL},
+    [EDGES] = {"edges", "", "quads that lack a corner are covered by the parts of the others: thin things keep their shadow; off = as in the paper", "",
+               PN_BOOL, 0, 1, 1, NULL},
 };
 
 static void preset(int choice, double *values) {
@@ -31,7 +33,7 @@ static void preset(int choice, double *values) {
 
 static pn_search_values search_values(const double *values) {
   return (pn_search_values){.primitive = (pn_primitive)values[PRIMITIVE], .hierarchy = (pn_hierarchy)values[HIERARCHY],
-                            .gaps = values[GAPS] != 0 && values[PRIMITIVE] == PN_PRIMITIVE_PATCH, .merge = values[MERGE],
+                            .gaps = values[GAPS] != 0 && values[PRIMITIVE] == PN_PRIMITIVE_PATCH, .edges = values[EDGES] != 0, .merge = values[MERGE],
                             .merge_index = MERGE, .cap_index = CAP};
 }
 

@@ -3,7 +3,7 @@
 #include "search/parameters.h"
 #include "techniques/technique.h"
 
-enum { PRESET, SAMPLES, PRIMITIVE, MAPS, LAYERS, HIERARCHY, CAP, MERGE, COUNT };
+enum { PRESET, SAMPLES, PRIMITIVE, MAPS, LAYERS, HIERARCHY, CAP, MERGE, EDGES, COUNT };
 enum { SAMPLES_16J, SAMPLES_8, SAMPLES_16, SAMPLES_32 };
 enum { MAPS_FRONT, MAPS_TWO_SIDED, MAPS_LAYERS };
 
@@ -28,6 +28,8 @@ static const pn_parameter parameters[COUNT] = {
              4096, 0, NULL},
     [MERGE] = {"merge", "%", "blocks are one primitive where that moves no edge by more than this part of the light; 0 = every texel", "",
                PN_FLOAT, 0, 50, 1, NULL},
+    [EDGES] = {"edges", "", "quads that lack a corner are covered by the parts of the others: thin things keep their shadow; off = as in the paper", "",
+               PN_BOOL, 0, 1, 1, NULL},
 };
 
 static void preset(int choice, double *values) {
@@ -48,7 +50,7 @@ static void preset(int choice, double *values) {
 
 static pn_search_values search_values(const double *values) {
   return (pn_search_values){.primitive = (pn_primitive)values[PRIMITIVE], .hierarchy = (pn_hierarchy)values[HIERARCHY],
-                            .gaps = false, .merge = values[MERGE], .merge_index = MERGE, .cap_index = CAP};
+                            .gaps = false, .edges = values[EDGES] != 0, .merge = values[MERGE], .merge_index = MERGE, .cap_index = CAP};
 }
 
 static void want(const double *values, pn_maps_want *out) {
