@@ -180,7 +180,9 @@ int pn_stack_level(int extent) {
 vec2 pn_window_range(int light, highp sampler2DArray stack, int map, int layer, ivec2 low, ivec2 high, bool four) {
   int extent = max(high.x - low.x, high.y - low.y) + 1;
   if (!four) {
-    int level = pn_stack_level(extent + 1); // the centre of a neighbourhood of even size is half a texel off
+    // The centre of a neighbourhood of even size is half a texel off; over the whole map that does not matter, and there is no level above it.
+    ivec2 size = pn_map_size(light);
+    int level = pn_stack_level(min(extent + 1, max(size.x, size.y)));
     return pn_stack_at(light, stack, map, layer, level, (low + high + 1) / 2);
   }
   // Section 5: four neighbourhoods of half the size, pushed into the window's corners.
