@@ -61,11 +61,15 @@ static size_t texture_bytes(const pn_texture *t, const format_info *info) {
   return bytes;
 }
 
-/* Allocates the images; the unit used is one the library saves. */
+/* Allocates the images; the unit used is one the library saves. The number of levels comes first: Mesa allocates by it, and where it has to guess, for
+ * small arrays, some images cannot be drawn into. */
 static void define_texture(pn_gpu *gpu, const pn_texture *t, const format_info *info) {
   GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
   GL(gpu, BindTexture)(t->target, t->id);
   GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, 0);
+  GL(gpu, TexParameteri)(t->target, GL_TEXTURE_MAX_LEVEL, t->levels - 1);
+  GL(gpu, TexParameteri)
+  (t->target, GL_TEXTURE_MIN_FILTER, t->levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);
   for (int level = 0; level < t->levels; level++) {
     int width = half(t->width, level), height = half(t->height, level);
     if (t->layers)
@@ -74,9 +78,6 @@ static void define_texture(pn_gpu *gpu, const pn_texture *t, const format_info *
     else
       GL(gpu, TexImage2D)(t->target, level, (GLint)t->format, width, height, 0, info->layout, info->type, NULL);
   }
-  GL(gpu, TexParameteri)(t->target, GL_TEXTURE_MAX_LEVEL, t->levels - 1);
-  GL(gpu, TexParameteri)
-  (t->target, GL_TEXTURE_MIN_FILTER, t->levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);
   GL(gpu, TexParameteri)(t->target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   GL(gpu, TexParameteri)(t->target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   GL(gpu, TexParameteri)(t->target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -151,7 +152,10 @@ static pn_result attach_all(pn_gpu *gpu, const pn_pass *pass) {
   GL(gpu, DrawBuffers)(2, draw);
   GLenum status = GL(gpu, CheckFramebufferStatus)(GL_DRAW_FRAMEBUFFER);
   if (status == GL_FRAMEBUFFER_COMPLETE) return PN_OK;
-  return pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_FRAMEBUFFER, "this device cannot draw into that format (0x%x)", status);
+  return pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_FRAMEBUFFER, "this device cannot draw into a %d x %d image of texture %u, level %d, layer %d (0x%x)",
+                 pass->width, pass->height, pass->color[0].texture ? pass->color[0].texture : pass->depth.texture,
+                 pass->color[0].texture ? pass->color[0].level : pass->depth.level,
+                 pass->color[0].texture ? pass->color[0].layer : pass->depth.layer, status);
 }
 
 static void set_depth(pn_gpu *gpu, const pn_pass *pass) {
