@@ -359,6 +359,21 @@ static void cast_leaves(bench *b, uint64_t seed) {
   }
 }
 
+/* Small maps with several layers: every size and number of them can be drawn. */
+static void test_small_layered(void **state) {
+  (void)state;
+  for (int structure = PN_RANGE_PYRAMID; structure <= PN_RANGE_STACK; structure++)
+    for (int i = 0; i < 64; i++) {
+      const pn_maps_want want = {.near_layers = 1 + i % 4, .farthest = i & 1, .range = {(pn_range_structure)structure, false}};
+      bench b;
+      bench_open(&b, false);
+      cast_leaves(&b, 4);
+      bench_draw(&b, &want, 1 + i / 4 % 4, 1 + i / 16);
+      if (structure == PN_RANGE_PYRAMID) check_pyramid(&b);
+      bench_close(&b);
+    }
+}
+
 static void check_ranges(pn_range_structure structure, void (*check)(const bench *)) {
   static const int more[][2] = {{64, 64}, {100, 37}, {1, 64}, {65, 2}};
   for (int quads = 0; quads < 2; quads++) {
@@ -393,6 +408,7 @@ int main(void) {
       cmocka_unit_test(test_plane),           cmocka_unit_test(test_layers),          cmocka_unit_test(test_farthest_alone),
       cmocka_unit_test(test_faces),           cmocka_unit_test(test_crossing_layers), cmocka_unit_test(test_near_and_behind),
       cmocka_unit_test(test_pyramid),         cmocka_unit_test(test_stack),
+      cmocka_unit_test(test_small_layered),
   };
   return GL_RUN("maps", tests);
 }
