@@ -14,7 +14,7 @@ pn_result pn_light_create(pn_context *context, pn_light **out) {
   if (!out) return pn_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_light_create: out is NULL");
   *out = pn_object_create(context, PN_OBJECT_LIGHT, sizeof **out);
   if (!*out) return PN_ERROR_OUT_OF_MEMORY;
-  return pn_light_technique(*out, "pcss", NULL, 0);
+  return pn_light_technique(*out, PN_TECHNIQUE_DEFAULT, NULL, 0);
 }
 
 void pn_light_free(pn_light *light, bool abandon) {
@@ -96,10 +96,12 @@ pn_result pn_light_set(pn_light *light, const pn_light_desc *desc) {
   if (result == PN_OK) result = check_maps(gpu, desc);
   if (result == PN_OK) result = make_frame(gpu, desc, &frame);
   if (result != PN_OK) return result;
-  if (light->set && !memcmp(&light->desc, desc, sizeof *desc)) return PN_OK;
-  light->desc = *desc;
-  if (!light->desc.map_width) light->desc.map_width = 512;
-  if (!light->desc.map_height) light->desc.map_height = light->desc.map_width;
+  pn_light_desc filled;
+  memcpy(&filled, desc, sizeof filled); /* padding too: the next line compares it */
+  if (!filled.map_width) filled.map_width = 512;
+  if (!filled.map_height) filled.map_height = filled.map_width;
+  if (light->set && !memcmp(&light->desc, &filled, sizeof filled)) return PN_OK;
+  memcpy(&light->desc, &filled, sizeof filled);
   light->frame = frame;
   light->set = true;
   light->warned_angle = false;
@@ -158,7 +160,7 @@ pn_result pn_prepare(pn_context *context, const char *spec) {
   char why[512];
   const pn_technique *table;
   double values[PN_PARAMETERS_MAX] = {0};
-  if (pn_technique_parse(spec ? spec : "pcss", &table, values, why, sizeof why) != PN_OK)
+  if (pn_technique_parse(spec ? spec : PN_TECHNIQUE_DEFAULT, &table, values, why, sizeof why) != PN_OK)
     return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_TECHNIQUE_UNKNOWN, "%s", why);
   const pn_technique_class *technique = pn_technique_class_of(table);
   char defines[PN_TECHNIQUE_DEFINES];

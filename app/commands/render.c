@@ -12,7 +12,7 @@
 #include "save.h"
 
 /* Until measurement finds the technique and preset that serve everyday use best. */
-static const char default_technique[] = "pcss";
+static const char default_technique[] = PN_TECHNIQUE_DEFAULT;
 
 struct picture {
   const char *spec;

@@ -361,8 +361,11 @@ PN_API int pn_technique_count(void);
 PN_API const pn_technique *pn_technique_at(int index);              /* NULL out of range */
 PN_API const pn_technique *pn_technique_find(const char *name);     /* NULL when unknown */
 
+/* What measured best for everyday use (docs/techniques/bitmask.md). */
+#define PN_TECHNIQUE_DEFAULT "bitmask"
+
 /* Chooses the technique and its parameters: "pcss" or "pcss:samples=16". Parameters not named take their defaults. On failure why (may be NULL)
- * receives one line that names what is wrong and what would be right, always terminated. A new light has "pcss". */
+ * receives one line that names what is wrong and what would be right, always terminated. A new light has PN_TECHNIQUE_DEFAULT. */
 PN_API pn_result pn_light_technique(pn_light *light, const char *spec, char *why, size_t why_size);
 
 /* Checks a spec without a light or a context; values may be NULL or hold parameter_count numbers. */

@@ -6,7 +6,7 @@
 /* Casters nearer to a rectangle than this part of the farthest caster's distance are taken to be that far: the map's depth has to reach both. Such a caster
  * is then seen a little too far from the light; what it hides, (s_Q - s_R) / (w_Q - w_R), hardly changes with w_Q that large. */
 static const double nearest_share = 1.0 / 256.0;
-/* Bounds are put on a grid of this many steps, at least, across the map. */
+/* Bounds are put on a grid of 32 to 64 steps across the map. */
 static const double snap_steps = 64;
 /* A map that opens wider than this is split. */
 static const double tile_opening = 120, tile_angle = 60; /* degrees */

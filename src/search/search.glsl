@@ -49,18 +49,14 @@ void pn_texel_patch(int light, highp sampler2DArray maps, pn_Receiver r, int map
   vec2 low = pn_map_st(light, map, vec2(texel)) - r.m.xy, high = pn_map_st(light, map, vec2(texel) + 1.0) - r.m.xy;
   vec2 a = pn_on_light(light, low, w - r.m.z), b = pn_on_light(light, high, w - r.m.z);
 #if PN_GAPS
-  // Guennebaud et al. 2006: a neighbour nearer to the light ends, seen from the receiver, before this patch begins; the patch is drawn out to it.
+  // Guennebaud et al. 2006: where a neighbour ends, seen from the receiver, before this patch begins, the patch is drawn out to it.
   float left = pn_map_fetch(light, maps, map, layer, texel - ivec2(1, 0));
   float below = pn_map_fetch(light, maps, map, layer, texel - ivec2(0, 1));
   if (left > r.m.z + r.epsilon_w && pn_texel_hides(light, r, map, texel - ivec2(1, 0), left)) {
-    float x = pn_on_light(light, low, left - r.m.z).x;
-    a.x = min(a.x, x);
-    b.x = max(b.x, x);
+    a.x = min(a.x, pn_on_light(light, low, left - r.m.z).x);
   }
   if (below > r.m.z + r.epsilon_w && pn_texel_hides(light, r, map, texel - ivec2(0, 1), below)) {
-    float y = pn_on_light(light, low, below - r.m.z).y;
-    a.y = min(a.y, y);
-    b.y = max(b.y, y);
+    a.y = min(a.y, pn_on_light(light, low, below - r.m.z).y);
   }
 #endif
   pn_cover_rectangle(c, a, b);

@@ -92,7 +92,7 @@ static void compare_technique(host *h, const setting *s, const camera_view *v, c
   double allowed = allowed_changes(a.range * delta / step);
   printf("%s %s: %d of %d pixels differ, mean %.2g, worst %.2g; %d strays\n", directory, techniques[index], a.differing,
          a.pixels, a.sum / a.pixels, a.worst, a.strays);
-  assert_true(a.range > 50);
+  assert_true(a.range > 20); /* a shadow is there to be compared: on the model little of it lies on known planes */
   assert_true(a.sum / step <= allowed);
   if (index == 0) assert_true(a.strays <= 4);
   free(skip_pixel), free(ours), free(theirs);
