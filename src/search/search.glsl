@@ -115,8 +115,8 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, in
   return q;
 }
 
-void pn_texel_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 texel, inout pn_Cover c) {
-  pn_Quad q = pn_quad(light, maps, r, map, layer, texel, texel + 1);
+void pn_texel_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 first, ivec2 last, inout pn_Cover c) {
+  pn_Quad q = pn_quad(light, maps, r, map, layer, first, last);
   if (!q.some) return;
   if (q.whole)
     pn_cover_quad(c, vec2(q.x.x, q.y.x), vec2(q.x.y, q.y.y), vec2(q.x.z, q.y.z), vec2(q.x.w, q.y.w));
@@ -130,7 +130,7 @@ void pn_texel_primitive(int light, highp sampler2DArray maps, pn_Receiver r, int
 #if PN_PRIMITIVE == PN_PATCH
   pn_texel_patch(light, maps, r, map, layer, texel, c);
 #else
-  pn_texel_quad(light, maps, r, map, layer, texel, c);
+  pn_texel_quad(light, maps, r, map, layer, texel, texel + 1, c);
 #endif
 }
 
@@ -309,6 +309,9 @@ int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray ra
   vec2 b0 = clamp(0.5 + scale * high / dw.x, 0.0, 1.0), b1 = clamp(0.5 + scale * high / dw_least, 0.0, 1.0);
   vec2 moved = max(abs(a0 - a1), abs(b0 - b1));
   bool one = dw.y > r.epsilon_w && front.x > rise && max(moved.x, moved.y) <= merge;
+  // A block that is itself no larger on the light than what may be moved is looked at no closer: its corners stand for it, as a texel's do.
+  vec2 size = scale * (high - low) / dw.x;
+  bool leaf = level == 0 || PN_PRIMITIVE != PN_PATCH && max(size.x, size.y) <= merge;
   pn_Rectangle most = pn_Rectangle(min(a0, a1), max(b0, b1));
 #if PN_PRIMITIVE == PN_PATCH
   pn_Rectangle as_one = pn_Rectangle(0.5 * (a0 + a1), 0.5 * (b0 + b1));
@@ -316,18 +319,18 @@ int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray ra
   pn_Quad quad = pn_quad(light, maps, r, map, layer, node << level, (node + 1) << level);
   pn_Rectangle as_one = pn_Rectangle(quad.low, quad.high);
 #if PN_PRIMITIVE == PN_QUAD
-  one = one || level == 0 && quad.some;
+  one = one || leaf && quad.some;
 #else
-  one = one || level == 0 && quad.some && !quad.whole;
+  one = one || leaf && quad.some && !quad.whole;
 #endif
 #endif
   if (one) most = as_one;
   bool done = pn_cover_or_ask(c, most.low, most.high, one);
   if (one) pn_search_done.z += 1.0;
 #if PN_PRIMITIVE == PN_QUAD_EXACT
-  if (!done && level == 0 && quad.whole) return PN_LEAF_QUAD;
+  if (!done && leaf && quad.whole) return PN_LEAF_QUAD;
 #endif
-  return done || level == 0 ? PN_SKIP : PN_DOWN;
+  return done || leaf ? PN_SKIP : PN_DOWN;
 }
 
 // A step of the walk: down to the first child, or past all last children and then aside. False at the end.
@@ -361,15 +364,15 @@ void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range
   bool going = true;
 #if PN_PRIMITIVE == PN_QUAD_EXACT
   while (going) {
-    ivec2 quad = ivec2(-1);
+    ivec3 quad = ivec3(-1); // and its level
     while (going && quad.x < 0 && turns < 15000) {
       turns++;
       pn_search_done.y += 1.0;
       int what = pn_visit_block(light, maps, range, r, map, layer, node, level, merge, c);
-      if (what == PN_LEAF_QUAD) quad = node;
+      if (what == PN_LEAF_QUAD) quad = ivec3(node, level);
       going = pn_walk(node, level, top, first, last, what == PN_DOWN) && !pn_is_full(c);
     }
-    if (quad.x >= 0) pn_texel_quad(light, maps, r, map, layer, quad, c);
+    if (quad.x >= 0) pn_texel_quad(light, maps, r, map, layer, quad.xy << quad.z, (quad.xy + 1) << quad.z, c);
     going = going && turns < 15000;
   }
 #else
