@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- creation ---- */
+/* ---- creation ---------------------------------------------------------------------------------------------------- */
 
 pn_result pn_context_create(const pn_context_desc *desc, pn_context **out) {
   if (!out) {
@@ -65,7 +65,7 @@ void pn_context_destroy(pn_context **context) { close_context(context, false); }
 
 void pn_context_abandon(pn_context **context) { close_context(context, true); }
 
-/* ---- objects ---- */
+/* ---- objects ----------------------------------------------------------------------------------------------------- */
 
 void *pn_object_create(pn_context *context, pn_object_kind kind, size_t bytes) {
   pn_object *object = pn_allocate_zero(&context->gpu, bytes);
@@ -86,7 +86,7 @@ void pn_object_unlink(pn_object *object) {
     object->context->objects = object->next;
 }
 
-/* ---- the host's GL state ---- */
+/* ---- the host's GL state ----------------------------------------------------------------------------------------- */
 
 void pn_enter(pn_context *context) {
   if (context->gpu.desc.state == PN_STATE_RESTORE) pn_state_save(&context->gpu, &context->saved);
@@ -115,7 +115,7 @@ static pn_result scope(pn_context *context, bool begin) {
 pn_result pn_state_begin(pn_context *context) { return scope(context, true); }
 pn_result pn_state_end(pn_context *context) { return scope(context, false); }
 
-/* ---- questions and switches ---- */
+/* ---- questions and switches -------------------------------------------------------------------------------------- */
 
 pn_result pn_reload_shaders(pn_context *context) {
   if (!context) return PN_ERROR_ARGUMENT;

@@ -27,7 +27,8 @@ struct pn_context {
   pn_uniform_buffer forward_block;
 };
 
-/* Every public function that touches GL does so between these two. pn_leave returns result, so that a function ends in one line. */
+/* Every public function that touches GL does so between these two. pn_leave returns result, so that a function ends
+ * in one line. */
 void pn_enter(pn_context *context);
 pn_result pn_leave(pn_context *context, pn_result result);
 

@@ -4,7 +4,7 @@
 
 #include "light.h"
 
-/* ---- text ---- */
+/* ---- text -------------------------------------------------------------------------------------------------------- */
 
 static const char *kept_text(pn_context *context, const char *key) {
   for (pn_forward_text *t = context->forward_texts; t; t = t->next)
@@ -69,7 +69,7 @@ const char *pn_glsl(pn_context *context, const char *spec, int glsl_version, int
   return forward_text(context, "shaders/forward.glsl", technique->shader, defines);
 }
 
-/* ---- binding ---- */
+/* ---- binding ----------------------------------------------------------------------------------------------------- */
 
 static pn_result check_lights(pn_light *const *lights, int count, const pn_slots *slots) {
   pn_gpu *gpu = &lights[0]->object.context->gpu;
@@ -100,7 +100,8 @@ static pn_result fill_blocks(pn_context *context, pn_light *const *lights, int c
   return pn_uniform_buffer_set(&context->gpu, &context->forward_block, blocks, sizeof blocks);
 }
 
-/* Every sampler gets a unit of its own kind, lights or not: two kinds of sampler on one unit are an error when drawing. */
+/* Every sampler gets a unit of its own kind, lights or not: two kinds of sampler on one unit are an error when
+ * drawing. */
 static void set_units(pn_gpu *gpu, pn_gl program, int count, int first) {
   for (int i = 0; i < PN_FORWARD_LIGHTS_MAX; i++) {
     char name[16];

@@ -7,7 +7,7 @@
 
 static pn_gpu *gpu_of(const pn_light *light) { return &light->object.context->gpu; }
 
-/* ---- the object ---- */
+/* ---- the object -------------------------------------------------------------------------------------------------- */
 
 pn_result pn_light_create(pn_context *context, pn_light **out) {
   if (!context) return PN_ERROR_ARGUMENT;
@@ -36,7 +36,7 @@ void pn_light_destroy(pn_light **light) {
   *light = NULL;
 }
 
-/* ---- the description ---- */
+/* ---- the description --------------------------------------------------------------------------------------------- */
 
 static bool positive(float value) { return isfinite(value) && value > 0; }
 
@@ -109,7 +109,7 @@ pn_result pn_light_set(pn_light *light, const pn_light_desc *desc) {
   return PN_OK;
 }
 
-/* ---- the technique ---- */
+/* ---- the technique ----------------------------------------------------------------------------------------------- */
 
 pn_result pn_light_technique(pn_light *light, const char *spec, char *why, size_t why_size) {
   if (!light) return PN_ERROR_ARGUMENT;
@@ -174,7 +174,7 @@ pn_result pn_prepare(pn_context *context, const char *spec) {
   return pn_leave(context, result);
 }
 
-/* ---- maps ---- */
+/* ---- maps -------------------------------------------------------------------------------------------------------- */
 
 static pn_result check_lost(pn_gpu *gpu) {
   if (!gpu->can.robustness || GL(gpu, GetGraphicsResetStatus)() == GL_NO_ERROR) return PN_OK;
@@ -194,7 +194,8 @@ static pn_result bind_block(pn_light *light) {
   return result;
 }
 
-/* What PN_FIT_FRUSTUM looks at; for PN_FIT_VISIBLE too it comes first, because it costs nothing and may settle the matter. */
+/* What PN_FIT_FRUSTUM looks at; for PN_FIT_VISIBLE too it comes first, because it costs nothing and may settle the
+ * matter. */
 static pn_result find_frusta(pn_light *light, pn_receiver *const *receivers, int count) {
   bool wanted = light->desc.fit == PN_FIT_VISIBLE || light->desc.fit == PN_FIT_FRUSTUM;
   light->has_visible = wanted && count > 0;
@@ -309,7 +310,7 @@ pn_result pn_light_maps(const pn_light *light, pn_maps_info *out) {
   return PN_OK;
 }
 
-/* ---- visibility ---- */
+/* ---- visibility -------------------------------------------------------------------------------------------------- */
 
 static bool is_alive(const pn_context *context, const void *object) {
   for (const pn_object *o = context->objects; o; o = o->next)
@@ -407,7 +408,7 @@ pn_result pn_result_image(pn_light *light, pn_receiver *receiver, pn_image *out)
   return PN_OK;
 }
 
-/* ---- into the host's texture ---- */
+/* ---- into the host's texture ------------------------------------------------------------------------------------- */
 
 static void texture_extent(pn_gpu *gpu, GLenum target, pn_gl texture, GLint size[3]) {
   GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
@@ -457,7 +458,7 @@ pn_result pn_visibility_into(pn_light *light, pn_receiver *receiver, pn_gl textu
   return pn_leave(light->object.context, result);
 }
 
-/* ---- looking inside ---- */
+/* ---- looking inside ---------------------------------------------------------------------------------------------- */
 
 int pn_debug_image(pn_light *light, pn_receiver *receiver, int index, const char **name, pn_image *out) {
   if (!light || !out || index < 0) return 0;

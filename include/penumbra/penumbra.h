@@ -12,8 +12,9 @@
  * Conventions, unless a declaration says otherwise:
  *   - Scene space is right-handed. Matrices are column-major and map column vectors: float m[16], m[12..14] the
  *     translation. Distances are in scene units, angles in radians.
- *   - Every function that takes an object must be called with the context's GL context current, on that thread. Different
- *     contexts may be used on different threads at the same time. Functions without an object may be called anywhere.
+ *   - Every function that takes an object must be called with the context's GL context current, on that thread.
+ *     Different contexts may be used on different threads at the same time. Functions without an object may be called
+ *     anywhere.
  *   - Description structs may be zeroed: zero means the default wherever zero itself makes no sense.
  *   - Functions return PN_OK or a negative pn_result; the reason, with a stable message id, goes to the context's log.
  *     A call that fails leaves the object as it was. Nothing aborts, nothing is printed, no GL error is raised.
@@ -54,7 +55,7 @@ typedef uint32_t pn_gl;
 /* The library's version at run time, for example "0.1.0". */
 PN_API const char *pn_version(void);
 
-/* ---- results and messages ----------------------------------------------------------------------------------- */
+/* ---- results and messages ---------------------------------------------------------------------------------------- */
 
 typedef enum {
   PN_OK = 0,
@@ -91,7 +92,8 @@ typedef enum {
   PN_MESSAGE_MESH_TEXCOORDS,          /* an alpha texture without texture coordinates, or impossible spans */
   PN_MESSAGE_MESH_ALPHA,              /* channel not 0..3, cutoff not in [0, 1] */
   PN_MESSAGE_MESH_BOUNDS,             /* bounds missing for a GL buffer, inverted, or not finite */
-  PN_MESSAGE_MESH_DROPPED,            /* warning: triangles with a coordinate that is not finite, or without area, dropped */
+  /* warning: triangles with a coordinate that is not finite, or without area, dropped */
+  PN_MESSAGE_MESH_DROPPED,
   PN_MESSAGE_MESH_UNKNOWN,            /* the mesh was removed or never existed */
   PN_MESSAGE_INSTANCE_UNKNOWN,        /* the instance was removed or never existed */
   PN_MESSAGE_INSTANCE_TRANSFORM,      /* not finite, or its last row is not 0 0 0 1 */
@@ -108,7 +110,8 @@ typedef enum {
   PN_MESSAGE_RECEIVER_UNSET,          /* pn_receiver_set has not succeeded yet */
   PN_MESSAGE_LIGHT_SHAPE,             /* unknown shape */
   PN_MESSAGE_LIGHT_FRAME,             /* direction or axis zero, parallel, or not finite */
-  PN_MESSAGE_LIGHT_SIZE,              /* half extents not positive and finite (sun: or tangent above PN_SUN_TANGENT_MAX) */
+  /* half extents not positive and finite (sun: or tangent above PN_SUN_TANGENT_MAX) */
+  PN_MESSAGE_LIGHT_SIZE,
   PN_MESSAGE_LIGHT_RANGE,             /* near distance or range negative, not finite, or near >= range */
   PN_MESSAGE_LIGHT_TEXTURE,           /* a textured light, which this version does not do yet */
   PN_MESSAGE_LIGHT_FIT,               /* unknown fit, or its bounds inverted or not finite */
@@ -131,13 +134,14 @@ PN_API const char *pn_message_name(int message_id);
 /* Called on the calling thread, during the call that caused it. text is one line, valid during the callback. */
 typedef void (*pn_log_fn)(void *user, pn_log_level level, int message_id, const char *text);
 
-/* ---- context ------------------------------------------------------------------------------------------------ */
+/* ---- context ----------------------------------------------------------------------------------------------------- */
 
 /* What happens to the host's GL state. docs/integration.md lists every piece that is saved. */
 typedef enum {
-  PN_STATE_RESTORE = 0, /* every call leaves the state as it found it: about 60 glGet* a call */
+  PN_STATE_RESTORE = 0, /* every call leaves the state as it found it: about 100 glGet* and glIsEnabled a call */
   PN_STATE_SCOPED,      /* saved by pn_state_begin, restored by pn_state_end; calls in between read nothing back */
-  PN_STATE_RESET        /* nothing is read back; after each call the state is GL's default wherever the library touched it */
+  /* nothing is read back; after each call the state is GL's default wherever the library touched it */
+  PN_STATE_RESET
 } pn_state_mode;
 
 typedef struct {
@@ -149,11 +153,12 @@ typedef struct {
   void *user;    /* handed to the three callbacks */
   pn_state_mode state;
   size_t gpu_memory_limit;      /* bytes, for everything the library allocates in GL; 0 = none */
-  const char *shader_directory; /* sources read from here instead of the embedded ones, for live editing; NULL = embedded */
+  /* sources read from here instead of the embedded ones, for live editing; NULL = embedded */
+  const char *shader_directory;
 } pn_context_desc;
 
-/* Makes a context for the current GL context, OpenGL 3.3 core or newer (compatibility contexts work too). desc may be NULL:
- * all defaults. The description is copied, its strings too. No shader is compiled yet: see pn_prepare. */
+/* Makes a context for the current GL context, OpenGL 3.3 core or newer (compatibility contexts work too). desc may be
+ * NULL: all defaults. The description is copied, its strings too. No shader is compiled yet: see pn_prepare. */
 PN_API pn_result pn_context_create(const pn_context_desc *desc, pn_context **out);
 
 /* Frees the context and every object made from it that still lives (their handles become invalid), GL objects included.
@@ -167,28 +172,30 @@ PN_API void pn_context_abandon(pn_context **context);
 PN_API pn_result pn_state_begin(pn_context *context);
 PN_API pn_result pn_state_end(pn_context *context);
 
-/* With shader_directory: throws compiled programs away, so that the next call compiles from the files as they are now. */
+/* With shader_directory: throws compiled programs away, so that the next call compiles from the files as they are
+ * now. */
 PN_API pn_result pn_reload_shaders(pn_context *context);
 
 /* What the device can do and what the library makes of it. */
 typedef struct {
   const char *vendor, *renderer, *version; /* GL's strings, valid as long as the context */
-  int gl_version;                          /* 33 for 3.3, 460 never: 46 */
-  int software;                            /* nonzero: a software rasteriser; clocks are glFinish and the system's, not queries */
+  int gl_version;                          /* 33 for OpenGL 3.3 */
+  /* nonzero: a software rasteriser; clocks are glFinish and the system's, not queries */
+  int software;
   int map_size_max;                        /* largest map width and height here */
   int map_layers_max;                      /* layers of depth a light can have: peeled layers times tiles */
   size_t gpu_memory;                       /* bytes the library holds in GL now */
 } pn_info;
 PN_API pn_result pn_context_info(const pn_context *context, pn_info *out);
 
-/* Optional features, one call for each index from 0 until it returns 0. *in_use tells whether it is taken here; *help says in
- * one line what it is for and what happens without it. Strings are static. */
+/* Optional features, one call for each index from 0 until it returns 0. *in_use tells whether it is taken here; *help
+ * says in one line what it is for and what happens without it. Strings are static. */
 PN_API int pn_feature(const pn_context *context, int index, const char **name, int *in_use, const char **help);
 
-/* ---- casters: what blocks light ------------------------------------------------------------------------------- */
+/* ---- casters: what blocks light ---------------------------------------------------------------------------------- */
 
-/* Numbers in a GL buffer (referenced, not copied: keep it alive, its contents may change) or in memory (copied during the call).
- * Exactly one of buffer and data is set. */
+/* Numbers in a GL buffer (referenced, not copied: keep it alive, its contents may change) or in memory (copied during
+ * the call). Exactly one of buffer and data is set. */
 typedef struct {
   pn_gl buffer;
   const void *data;
@@ -197,19 +204,22 @@ typedef struct {
   size_t count;  /* elements: vertices, or indices (not bytes, not triangles) */
 } pn_span;
 
-/* A triangle mesh. Triangles may face any way: what blocks light is decided per technique, and closed meshes give the same
- * shadow with any winding. */
+/* A triangle mesh. Triangles may face any way: what blocks light is decided per technique, and closed meshes give the
+ * same shadow with any winding. */
 typedef struct {
   pn_span positions; /* 3 floats each, object space */
   pn_span indices;   /* count 0: positions are triangles, three by three */
   int index_bytes;   /* 0 (no indices), 2 or 4 */
   pn_span texcoords; /* 2 floats each, with alpha_texture only */
-  pn_gl alpha_texture;  /* 2D texture whose alpha_channel below alpha_cutoff makes holes; its own sampling parameters and mipmaps are
-                           used. 0: opaque. Referenced, not copied */
+  /* 2D texture whose alpha_channel below alpha_cutoff makes holes; its own sampling parameters and mipmaps are used.
+   * 0: opaque. Referenced, not copied */
+  pn_gl alpha_texture;
   int alpha_channel;    /* 0..3 = red..alpha. Default 0: set 3 for the usual alpha */
   float alpha_cutoff;   /* [0, 1]; a texel with alpha >= cutoff blocks. 0 = 0.5 */
-  float bounds_min[3], bounds_max[3]; /* object space; equal: computed from data. Required when positions are in a GL buffer */
-  int clockwise; /* nonzero: front faces wind clockwise seen from outside. Matters only to techniques that look at faces */
+  /* object space; equal: computed from data. Required when positions are in a GL buffer */
+  float bounds_min[3], bounds_max[3];
+  /* nonzero: front faces wind clockwise seen from outside. Matters only to techniques that look at faces */
+  int clockwise;
 } pn_mesh_desc;
 
 typedef struct { uint32_t id; } pn_mesh;     /* id 0 is never valid */
@@ -218,46 +228,52 @@ typedef struct { uint32_t id; } pn_instance; /* id 0 is never valid */
 PN_API pn_result pn_casters_create(pn_context *context, pn_casters **out);
 PN_API void pn_casters_destroy(pn_casters **casters); /* clears the handle */
 
-/* Adds a mesh. It casts nothing until an instance places it. Triangles in memory with a coordinate that is not finite, or
- * without area, are dropped and counted in one warning. */
+/* Adds a mesh. It casts nothing until an instance places it. Triangles in memory with a coordinate that is not
+ * finite, or without area, are dropped and counted in one warning. */
 PN_API pn_result pn_mesh_add(pn_casters *casters, const pn_mesh_desc *desc, pn_mesh *out);
 
-/* The mesh deformed. positions: new data of the same count in memory, or NULL when the contents of the GL buffer changed.
- * bounds: min and max in object space, six floats; NULL: computed (memory) or unchanged (GL buffer). */
+/* The mesh deformed. positions: new data of the same count in memory, or NULL when the contents of the GL buffer
+ * changed. bounds: min and max in object space, six floats; NULL: computed (memory) or unchanged (GL buffer). */
 PN_API pn_result pn_mesh_moved(pn_casters *casters, pn_mesh mesh, const pn_span *positions, const float *bounds);
 PN_API pn_result pn_mesh_remove(pn_casters *casters, pn_mesh mesh); /* and its instances */
 
 #define PN_GROUP_COUNT 32
 #define PN_GROUPS_ALL 0xffffffffu
 
-/* Places a mesh. scene_from_object must be affine (last row 0 0 0 1); mirroring and zero scale are allowed. group 0..31. */
-PN_API pn_result pn_instance_add(pn_casters *casters, pn_mesh mesh, const float scene_from_object[16], int group, pn_instance *out);
+/* Places a mesh. scene_from_object must be affine (last row 0 0 0 1); mirroring and zero scale are allowed. group
+ * 0..31. out may be NULL for an instance that stays as it is. */
+PN_API pn_result pn_instance_add(pn_casters *casters, pn_mesh mesh, const float scene_from_object[16], int group,
+                                 pn_instance *out);
 PN_API pn_result pn_instance_move(pn_casters *casters, pn_instance instance, const float scene_from_object[16]);
 PN_API pn_result pn_instance_remove(pn_casters *casters, pn_instance instance);
 
 /* Which surfaces a pass draws. */
 typedef enum { PN_FACES_ANY = 3, PN_FACES_FRONT = 1, PN_FACES_BACK = 2 } pn_faces;
 
-/* What a pass asks of the host's draw callback. Framebuffer, viewport, depth function, depth range, depth clamp, culling and
- * colour mask are set: do not change them. Program, vertex array, textures and buffers are the callback's to bind. */
+/* What a pass asks of the host's draw callback. Framebuffer, viewport, depth function, depth range, depth clamp,
+ * culling and colour mask are set: do not change them. Program, vertex array, textures and buffers are the callback's
+ * to bind. */
 typedef struct {
   const float *clip_from_scene; /* 16 floats; GL's own depth convention (-1 to 1), never a reversed one */
   const float *planes;          /* plane_count times 4: n.p + d >= 0 inside, scene space, for the host's culling */
   int plane_count;
   pn_faces faces;     /* already set with glCullFace, for information */
-  pn_gl peel_texture; /* not 0: bound to unit peel_unit; the fragment shader must call pn_peel(), see pn_glsl("caster", ...) */
+  /* not 0: bound to unit peel_unit; the fragment shader must call pn_peel(), see pn_glsl("caster", ...) */
+  pn_gl peel_texture;
   int peel_unit;      /* value for the sampler uniform pn_peel_map */
   int layer, width, height;
 } pn_caster_pass;
 typedef void (*pn_draw_fn)(void *user, const pn_caster_pass *pass);
 
-/* Casters drawn by the host's own shaders, beside any meshes: called once or more in each pn_maps_update. bounds: min and max in scene space, six
- * floats, that contain everything drawn. One callback for a group; draw NULL removes it. The callback must not call the library. */
+/* Casters drawn by the host's own shaders, beside any meshes: called once or more in each pn_maps_update. bounds: min
+ * and max in scene space, six floats, that contain everything drawn. One callback for a group; draw NULL removes it.
+ * The callback must not call the library. */
 PN_API pn_result pn_casters_draw(pn_casters *casters, int group, pn_draw_fn draw, void *user, const float bounds[6]);
 
-/* ---- receiver: one camera view ------------------------------------------------------------------------------------ */
+/* ---- receiver: one camera view ----------------------------------------------------------------------------------- */
 
-/* How a normal texture stores the surface's geometric (not bump-mapped) normal. Length does not matter, either sign will do. */
+/* How a normal texture stores the surface's geometric (not bump-mapped) normal. Length does not matter, either sign
+ * will do. */
 typedef enum {
   PN_NORMAL_SIGNED = 0,      /* rgb = normal: float or snorm textures */
   PN_NORMAL_UNSIGNED,        /* rgb = normal/2 + 1/2: unorm textures */
@@ -272,8 +288,9 @@ typedef enum {
   PN_FORMAT_R8 /* steps of 1/255 */
 } pn_format;
 
-/* One camera view. The library reads the host's depth as it is: any depth format, any projection (perspective, orthographic,
- * off-centre, jittered, infinite, reversed), compare mode ignored. Set it each frame, after the depth pre-pass. */
+/* One camera view. The library reads the host's depth as it is: any depth format, any projection (perspective,
+ * orthographic, off-centre, jittered, infinite, reversed), compare mode ignored. Set it each frame, after the depth
+ * pre-pass. */
 typedef struct {
   pn_gl depth_texture;     /* 2D or 2D multisample (sample 0 is read); or */
   pn_gl depth_framebuffer; /* a framebuffer whose depth is copied (renderbuffers; multisample: sample 0), with */
@@ -282,11 +299,15 @@ typedef struct {
   float view[16];          /* eye from scene */
   float projection[16];    /* clip from eye */
   int depth_zero_to_one;   /* nonzero: the projection maps to [0, 1] (glClipControl with GL_ZERO_TO_ONE) */
-  float background_depth;  /* the depth that means nothing was drawn: 1, or 0 for reversed depth. PN_RECEIVER_DEFAULTS has 1 */
-  pn_gl normal_texture;    /* 0: the tangent plane comes from depth. Same size and view rectangle as the depth texture (framebuffer: as the view) */
+  /* the depth that means nothing was drawn: 1, or 0 for reversed depth. PN_RECEIVER_DEFAULTS has 1 */
+  float background_depth;
+  /* 0: the tangent plane comes from depth. Same size and view rectangle as the depth texture (framebuffer: as the
+   * view) */
+  pn_gl normal_texture;
   pn_normal_encoding normal_encoding;
   int normal_in_view; /* nonzero: normals are in eye space, else in scene space */
-  pn_gl mask_texture; /* red = 0: not a receiver, visibility 1 is written. 0: everything receives. Size as the normal texture's */
+  /* red = 0: not a receiver, visibility 1 is written. 0: everything receives. Size as the normal texture's */
+  pn_gl mask_texture;
   int scale;          /* 1, 2 or 4: visibility is computed at 1/scale and brought up along depth and plane; 0 = 1 */
   pn_format format;   /* of the results */
 } pn_receiver_desc;
@@ -296,15 +317,17 @@ PN_API pn_result pn_receiver_create(pn_context *context, pn_receiver **out);
 PN_API void pn_receiver_destroy(pn_receiver **receiver); /* and its results; clears the handle */
 PN_API pn_result pn_receiver_set(pn_receiver *receiver, const pn_receiver_desc *desc);
 
-/* ---- light ---------------------------------------------------------------------------------------------------------- */
+/* ---- light ------------------------------------------------------------------------------------------------------- */
 
 typedef enum { PN_LIGHT_RECTANGLE = 0, PN_LIGHT_SUN } pn_light_shape;
 
-/* Which casters the depth maps are fitted to. Accuracy depends on the map's resolution over what casts. Bounds snap, so that a
- * caster moving inside them does not make the others' shadows crawl. */
+/* Which casters the depth maps are fitted to. Accuracy depends on the map's resolution over what casts. Bounds snap,
+ * so that a caster moving inside them does not make the others' shadows crawl. */
 typedef enum {
   PN_FIT_CASTERS = 0, /* everything that casts */
-  PN_FIT_VISIBLE,     /* what can shadow a visible receiver: reads a few numbers back from the receivers' depth, one synchronisation a call */
+  /* what can shadow a visible receiver: reads a few numbers back from the receivers' depth, one synchronisation a
+   * call */
+  PN_FIT_VISIBLE,
   PN_FIT_FRUSTUM,     /* what can shadow a point in the receivers' view frusta: no read-back, less tight */
   PN_FIT_GIVEN        /* the box fit_bounds, taken literally: no snapping, no empty border */
 } pn_fit;
@@ -316,7 +339,8 @@ typedef struct {
   pn_light_shape shape;
   float center[3];    /* rectangle: its centre. Sun: ignored */
   float direction[3]; /* where it shines; any length but zero */
-  float axis_u[3];    /* the rectangle's first axis; made perpendicular to direction. Zero: derived from up, see pn_light_frame */
+  /* the rectangle's first axis; made perpendicular to direction. Zero: derived from up, see pn_light_frame */
+  float axis_u[3];
   float half_u, half_v; /* rectangle: half extents, scene units. Sun: tangents of the angular radii */
   float near_distance;  /* casters nearer than this are taken to be this far. 0: from the casters */
   float range;          /* instances wholly beyond this distance cast nothing. 0: no limit */
@@ -332,11 +356,13 @@ PN_API void pn_light_destroy(pn_light **light); /* and its maps and results; cle
 /* Sets or changes the light. Only what changed is made anew. */
 PN_API pn_result pn_light_set(pn_light *light, const pn_light_desc *desc);
 
-/* The frame of a light that shines along direction: u = normalize(direction x up), v = u x direction; where up is parallel to direction it becomes
- * (0, 0, -1), then (1, 0, 0). direction_out is unit. Any output may be NULL. PN_ERROR_ARGUMENT: direction zero or not finite. */
-PN_API pn_result pn_light_frame(const float direction[3], const float up[3], float direction_out[3], float u[3], float v[3]);
+/* The frame of a light that shines along direction: u = normalize(direction x up), v = u x direction; where up is
+ * parallel to direction it becomes (0, 0, -1), then (1, 0, 0). direction_out is unit. Any output may be NULL.
+ * PN_ERROR_ARGUMENT: direction zero or not finite. */
+PN_API pn_result pn_light_frame(const float direction[3], const float up[3], float direction_out[3], float u[3],
+                                float v[3]);
 
-/* ---- techniques: everything by table -------------------------------------------------------------------------------- */
+/* ---- techniques: everything by table ----------------------------------------------------------------------------- */
 
 typedef enum { PN_INT = 0, PN_FLOAT, PN_BOOL, PN_CHOICE } pn_type;
 
@@ -364,28 +390,32 @@ PN_API const pn_technique *pn_technique_find(const char *name);     /* NULL when
 /* What measured best for everyday use (docs/techniques/bitmask.md). */
 #define PN_TECHNIQUE_DEFAULT "bitmask"
 
-/* Chooses the technique and its parameters: "pcss" or "pcss:samples=16". Parameters not named take their defaults. On failure why (may be NULL)
- * receives one line that names what is wrong and what would be right, always terminated. A new light has PN_TECHNIQUE_DEFAULT. */
+/* Chooses the technique and its parameters: "pcss" or "pcss:samples=16". Parameters not named take their defaults. On
+ * failure why (may be NULL) receives one line that names what is wrong and what would be right, always terminated. A
+ * new light has PN_TECHNIQUE_DEFAULT. */
 PN_API pn_result pn_light_technique(pn_light *light, const char *spec, char *why, size_t why_size);
 
 /* Checks a spec without a light or a context; values may be NULL or hold parameter_count numbers. */
-PN_API pn_result pn_technique_parse(const char *spec, const pn_technique **technique, double *values, char *why, size_t why_size);
+PN_API pn_result pn_technique_parse(const char *spec, const pn_technique **technique, double *values, char *why,
+                                    size_t why_size);
 
 /* Changes one parameter of the light's technique; a choice by its index. */
 PN_API pn_result pn_light_parameter(pn_light *light, const char *name, double value);
 
-/* Compiles now what a light with this spec will need, so that no frame has to. spec NULL: the light technique's default. */
+/* Compiles now what a light with this spec will need, so that no frame has to. spec NULL: the light technique's
+ * default. */
 PN_API pn_result pn_prepare(pn_context *context, const char *spec);
 
-/* ---- a frame --------------------------------------------------------------------------------------------------------- */
+/* ---- a frame ----------------------------------------------------------------------------------------------------- */
 
-/* Draws the light's depth maps. groups: a bit for each group that casts (PN_GROUPS_ALL). visible: the receivers that PN_FIT_VISIBLE and
- * PN_FIT_FRUSTUM look at; none: they fit to all casters. */
-PN_API pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible, int visible_count);
+/* Draws the light's depth maps. groups: a bit for each group that casts (PN_GROUPS_ALL). visible: the receivers that
+ * PN_FIT_VISIBLE and PN_FIT_FRUSTUM look at; none: they fit to all casters. */
+PN_API pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
+                                int visible_count);
 
-/* Maps to visibility buffer. Visibility is the unblocked fraction of the part of the light above the receiver's geometric horizon, and 1 where no part
- * is (surfaces that face away, or lie behind a rectangle), on background, and where the mask says so. May be called without a new
- * pn_maps_update: the maps stay. */
+/* Maps to visibility buffer. Visibility is the unblocked fraction of the part of the light above the receiver's
+ * geometric horizon, and 1 where no part is (surfaces that face away, or lie behind a rectangle), on background, and
+ * where the mask says so. May be called without a new pn_maps_update: the maps stay. */
 PN_API pn_result pn_visibility(pn_light *light, pn_receiver *receiver);
 
 typedef struct {
@@ -395,16 +425,17 @@ typedef struct {
   int width, height, layers, channels;
 } pn_image;
 
-/* The last result of the pair. The texture is the library's; it is valid until the pair's next pn_visibility, and the same texture
- * while size and format stay. */
+/* The last result of the pair. The texture is the library's; it is valid until the pair's next pn_visibility, and the
+ * same texture while size and format stay. */
 PN_API pn_result pn_result_image(pn_light *light, pn_receiver *receiver, pn_image *out);
 
-/* As pn_visibility, but written into the host's own texture: 2D (layer 0) or a layer of a 2D array, of the view's size at least, R8, R16F, R32F
- * or any colour-renderable format whose red channel will do. Written at the origin. */
+/* As pn_visibility, but written into the host's own texture: 2D (layer 0) or a layer of a 2D array, of the view's
+ * size at least, R8, R16F, R32F or any colour-renderable format whose red channel will do. Written at the origin. */
 PN_API pn_result pn_visibility_into(pn_light *light, pn_receiver *receiver, pn_gl texture, int layer);
 
-/* Makes searching techniques tell what they did, as the debug image "search": red = class (0 no map was asked, 1 lit, 2 umbra, 3 penumbra), green = blocks visited,
- * blue = primitives covered, alpha = texels in the search windows. Off at first; costs a second colour target. */
+/* Makes searching techniques tell what they did, as the debug image "search": red = class (0 no map was asked, 1 lit,
+ * 2 umbra, 3 penumbra), green = blocks visited, blue = primitives covered, alpha = texels in the search windows. Off
+ * at first; costs a second colour target. */
 PN_API pn_result pn_debug(pn_context *context, int enabled);
 
 /* Intermediate images, for looking at: index from 0 until it returns 0. receiver may be NULL: the light's maps only. */
@@ -421,10 +452,12 @@ typedef struct {
 } pn_maps_info;
 PN_API pn_result pn_light_maps(const pn_light *light, pn_maps_info *out);
 
-/* ---- forward shading: the same function inside the host's own shaders --------------------------------------------------- */
+/* ---- forward shading: the same function inside the host's own shaders -------------------------------------------- */
 
-/* GLSL text, owned by the context and valid as long as it; NULL on failure, with a message. No #version line, every name starts with pn_.
- *   a technique's spec  float pn_visibility(int light, vec3 position, vec3 geometric_normal), scene space, for the lights of pn_bind; the normal
+/* GLSL text, owned by the context and valid as long as it; NULL on failure, with a message. No #version line, every
+ * name starts with pn_.
+ * a technique's spec  float pn_visibility(int light, vec3 position, vec3 geometric_normal), scene space, for the
+ * lights of pn_bind; the normal
  *                       on the side that is shaded, any length
  *   "caster"            void pn_peel(): call it first in the fragment shader of a draw callback
  * glsl_version: 330 and up, or 300 and up with es nonzero. */
@@ -437,23 +470,26 @@ typedef struct {
 
 #define PN_FORWARD_LIGHTS_MAX 4
 
-/* Binds the maps and the uniform block of count lights (1..4), which must share one technique spec, for a program that contains pn_glsl's text, and sets
- * its samplers. Stays bound until the host binds something else: the one call that changes GL state on purpose. */
+/* Binds the maps and the uniform block of count lights (1..4), which must share one technique spec, for a program
+ * that contains pn_glsl's text, and sets its samplers. Stays bound until the host binds something else: the one call
+ * that changes GL state on purpose. */
 PN_API pn_result pn_bind(pn_light *const *lights, int count, pn_gl program, const pn_slots *slots);
 
-/* ---- time ------------------------------------------------------------------------------------------------------------------ */
+/* ---- time
+ * ------------------------------------------------------------------------------------------------------------------ */
 
 typedef struct {
   const char *stage; /* for example "depth_map"; static */
   double milliseconds;
 } pn_time;
 
-/* Turns measuring on or off; off at first. On hardware: timestamp queries, read some frames later, no stall, never nested in a
- * query of the host's. On software GL, where queries lie: glFinish around each stage and a monotonic clock. */
+/* Turns measuring on or off; off at first. On hardware: timestamp queries, read some frames later, no stall, never
+ * nested in a query of the host's. On software GL, where queries lie: glFinish around each stage and a monotonic
+ * clock. */
 PN_API pn_result pn_timing(pn_context *context, int enabled);
 
-/* Stage times of the latest frame of this light whose times are known: fills up to capacity, returns how many there are. wait nonzero: finishes
- * the GL's work first, so that the frame just drawn is known. */
+/* Stage times of the latest frame of this light whose times are known: fills up to capacity, returns how many there
+ * are. wait nonzero: finishes the GL's work first, so that the frame just drawn is known. */
 PN_API int pn_times(pn_light *light, pn_time *out, int capacity, int wait);
 
 #ifdef __cplusplus

@@ -8,7 +8,7 @@
 
 static pn_gpu *gpu_of(const pn_casters *casters) { return &casters->object.context->gpu; }
 
-/* ---- the object ---- */
+/* ---- the object -------------------------------------------------------------------------------------------------- */
 
 pn_result pn_casters_create(pn_context *context, pn_casters **out) {
   if (!context) return PN_ERROR_ARGUMENT;
@@ -35,7 +35,7 @@ void pn_casters_destroy(pn_casters **casters) {
   *casters = NULL;
 }
 
-/* ---- slots ---- */
+/* ---- slots ------------------------------------------------------------------------------------------------------- */
 
 /* A slot in an array that grows; freed ones are taken first. Ids never repeat, so a stale one is noticed. */
 static bool grow(pn_gpu *gpu, void **array, int *capacity, size_t element) {
@@ -76,7 +76,7 @@ pn_mesh_data *pn_find_mesh(const pn_casters *c, uint32_t id) {
   return NULL;
 }
 
-/* ---- meshes ---- */
+/* ---- meshes ------------------------------------------------------------------------------------------------------ */
 
 pn_result pn_mesh_add(pn_casters *casters, const pn_mesh_desc *desc, pn_mesh *out) {
   if (!casters) return PN_ERROR_ARGUMENT;
@@ -132,7 +132,7 @@ pn_result pn_mesh_remove(pn_casters *casters, pn_mesh mesh) {
   return pn_leave(casters->object.context, PN_OK);
 }
 
-/* ---- instances ---- */
+/* ---- instances --------------------------------------------------------------------------------------------------- */
 
 static pn_result check_transform(pn_gpu *gpu, const float m[16]) {
   if (!m) return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "the transform is NULL");
@@ -210,7 +210,7 @@ pn_result pn_casters_draw(pn_casters *casters, int group, pn_draw_fn draw, void 
   return PN_OK;
 }
 
-/* ---- bounds ---- */
+/* ---- bounds ------------------------------------------------------------------------------------------------------ */
 
 static void visit_box(const pn_box *box, const pn_matrix *transform, pn_box_visitor visit, void *user) {
   double corners[8][3];

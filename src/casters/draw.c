@@ -16,8 +16,8 @@ pn_result pn_casters_prepare(pn_gpu *gpu, bool peel) {
   return result == PN_OK ? caster_program(gpu, true, peel, &program) : result;
 }
 
-/* Whether all eight corners of every box lie outside the same plane of the map's frustum. The near plane does not count:
- * nearer casters are clamped to it. */
+/* Whether all eight corners of every box lie outside the same plane of the map's frustum. The near plane does not
+ * count: nearer casters are clamped to it. */
 static bool outside(const pn_mesh_data *mesh, const pn_matrix *clip_from_object) {
   for (int b = 0; b < mesh->box_count; b++) {
     const pn_box *box = &mesh->boxes[b];

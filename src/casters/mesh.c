@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- checks ---- */
+/* ---- checks ------------------------------------------------------------------------------------------------------ */
 
 static bool span_given(const pn_span *span) { return span->buffer || span->data; }
 
@@ -75,7 +75,7 @@ pn_result pn_mesh_check(pn_gpu *gpu, const pn_mesh_desc *d) {
   return PN_OK;
 }
 
-/* ---- reading spans ---- */
+/* ---- reading spans ----------------------------------------------------------------------------------------------- */
 
 static const char *span_at(const pn_span *span, size_t element, size_t index) {
   return (const char *)span->data + span->offset + index * (span->stride ? span->stride : element);
@@ -100,7 +100,7 @@ static pn_result copy_indices(pn_gpu *gpu, const pn_mesh_desc *d, uint32_t *out)
   return PN_OK;
 }
 
-/* ---- triangles and boxes ---- */
+/* ---- triangles and boxes ----------------------------------------------------------------------------------------- */
 
 static bool has_area(float p[3][3]) {
   double a[3], b[3];
@@ -164,7 +164,7 @@ static void box_vertices(pn_mesh_data *mesh, const pn_span *positions) {
   mesh->box_count = used;
 }
 
-/* ---- buffers ---- */
+/* ---- buffers ----------------------------------------------------------------------------------------------------- */
 
 static pn_result upload(pn_gpu *gpu, pn_mesh_data *mesh, int slot, GLenum target, const void *data, size_t bytes) {
   pn_result result = pn_memory_take(gpu, bytes);

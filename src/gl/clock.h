@@ -1,5 +1,5 @@
-/* Stage times. On hardware timestamp queries, read when they are there; on software GL, whose queries lie, glFinish and the
- * system's monotonic clock. Timestamps never nest in a host's own query. */
+/* Stage times. On hardware timestamp queries, read when they are there; on software GL, whose queries lie, glFinish
+ * and the system's monotonic clock. Timestamps never nest in a host's own query. */
 #ifndef PN_GL_CLOCK_H
 #define PN_GL_CLOCK_H
 
@@ -25,7 +25,8 @@ typedef struct {
 } pn_clock;
 
 void pn_clock_start(pn_gpu *gpu, pn_clock *clock);                   /* a frame begins; nothing while timing is off */
-void pn_clock_mark(pn_gpu *gpu, pn_clock *clock, const char *stage); /* what was drawn since the last mark was this stage */
+/* what was drawn since the last mark was this stage */
+void pn_clock_mark(pn_gpu *gpu, pn_clock *clock, const char *stage);
 void pn_clock_end(pn_gpu *gpu, pn_clock *clock);
 void pn_clock_read(pn_gpu *gpu, pn_clock *clock, bool wait); /* brings stage, milliseconds, count up to date */
 void pn_clock_free(pn_gpu *gpu, pn_clock *clock, bool abandon);

@@ -1,5 +1,5 @@
-/* Every GL function the library calls. The table holds pointers to function pointers: with libepoxy they point at its lazily
- * resolving variables, with a host's loader at the storage beside the table. Call as GL(gpu, DrawArrays)(...). */
+/* Every GL function the library calls. The table holds pointers to function pointers: with libepoxy they point at its
+ * lazily resolving variables, with a host's loader at the storage beside the table. Call as GL(gpu, DrawArrays)(...). */
 #ifndef PN_GL_FUNCTIONS_H
 #define PN_GL_FUNCTIONS_H
 

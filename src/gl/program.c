@@ -7,7 +7,7 @@
 #include "gl/embedded.h"
 #include "gl/text.h"
 
-/* ---- sources: embedded, or files of the host's directory ---- */
+/* ---- sources: embedded, or files of the host's directory --------------------------------------------------------- */
 
 static const char *embedded_source(const char *path) {
   for (int i = 0; i < pn_embedded_shader_count; i++)
@@ -28,13 +28,14 @@ static bool read_file(pn_gpu *gpu, const char *path, pn_text *out) {
   return whole && out->bytes;
 }
 
-/* A file missing from the directory is taken from the embedded ones, so that a directory may hold just the files being edited. */
+/* A file missing from the directory is taken from the embedded ones, so that a directory may hold just the files
+ * being edited. */
 static const char *source(pn_gpu *gpu, const char *path, pn_text *storage) {
   if (gpu->shader_directory && read_file(gpu, path, storage)) return storage->bytes;
   return embedded_source(path);
 }
 
-/* ---- includes ---- */
+/* ---- includes ---------------------------------------------------------------------------------------------------- */
 
 enum { INCLUDES_MAX = 32 };
 
@@ -109,7 +110,7 @@ pn_result pn_shader_text(pn_gpu *gpu, const char *const *paths, const char *defi
   return result;
 }
 
-/* ---- compiling ---- */
+/* ---- compiling --------------------------------------------------------------------------------------------------- */
 
 static pn_result compile(pn_gpu *gpu, GLenum stage, const char *path, const char *more, const char *defines, pn_gl *out) {
   char *text = NULL;

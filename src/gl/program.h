@@ -27,8 +27,8 @@ pn_result pn_program_get(pn_gpu *gpu, const pn_program_key *key, const pn_progra
 GLint pn_uniform(const pn_program *program, const char *name);
 void pn_programs_free(pn_gpu *gpu, bool abandon);
 
-/* The whole text of one stage, without #version: defines, then the files with their includes in place, each once. paths ends with NULL.
- * Owned by the caller (pn_free). */
+/* The whole text of one stage, without #version: defines, then the files with their includes in place, each once.
+ * paths ends with NULL. Owned by the caller (pn_free). */
 pn_result pn_shader_text(pn_gpu *gpu, const char *const *paths, const char *defines, char **out);
 
 #endif

@@ -1,7 +1,7 @@
 #include "gl/state.h"
 
-/* Capabilities without an index. GL_DITHER is the only one that is on by default here; multisampling is of no effect in the
- * single-sample targets the library draws to. */
+/* Capabilities without an index. GL_DITHER is the only one that is on by default here; multisampling is of no effect
+ * in the single-sample targets the library draws to. */
 static const GLenum switches[] = {
     GL_SCISSOR_TEST,          GL_STENCIL_TEST,    GL_DEPTH_TEST,        GL_CULL_FACE,
     GL_POLYGON_OFFSET_FILL,   GL_COLOR_LOGIC_OP,  GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE,

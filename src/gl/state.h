@@ -34,7 +34,8 @@ void pn_state_restore(pn_gpu *gpu, const pn_gl_state *state);
 /* GL's defaults for everything the library touches, except the viewport, which has none. */
 void pn_state_reset(pn_gpu *gpu);
 
-/* Switches off everything that could change what a pass of the library draws: whatever the host, or its draw callback, left on. */
+/* Switches off everything that could change what a pass of the library draws: whatever the host, or its draw
+ * callback, left on. */
 void pn_state_neutral(pn_gpu *gpu);
 
 /* The indexed binding of the uniform block that the library's own passes use. */

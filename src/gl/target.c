@@ -4,7 +4,7 @@
 
 #include "gl/state.h"
 
-/* ---- memory ---- */
+/* ---- memory ------------------------------------------------------------------------------------------------------ */
 
 pn_result pn_memory_take(pn_gpu *gpu, size_t bytes) {
   size_t limit = gpu->desc.gpu_memory_limit;
@@ -27,7 +27,7 @@ pn_result pn_memory_check(pn_gpu *gpu, size_t bytes) {
   return pn_fail(gpu, PN_ERROR_OUT_OF_MEMORY, PN_MESSAGE_GPU_MEMORY, "the driver has no %zu bytes of GPU memory", bytes);
 }
 
-/* ---- textures ---- */
+/* ---- textures ---------------------------------------------------------------------------------------------------- */
 
 typedef struct { GLenum format, layout, type; int bytes, channels; } format_info;
 
@@ -61,8 +61,8 @@ static size_t texture_bytes(const pn_texture *t, const format_info *info) {
   return bytes;
 }
 
-/* Allocates the images; the unit used is one the library saves. The number of levels comes first: Mesa allocates by it, and where it has to guess, for
- * small arrays, some images cannot be drawn into. */
+/* Allocates the images; the unit used is one the library saves. The number of levels comes first: Mesa allocates by
+ * it, and where it has to guess, for small arrays, some images cannot be drawn into. */
 static void define_texture(pn_gpu *gpu, const pn_texture *t, const format_info *info) {
   GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
   GL(gpu, BindTexture)(t->target, t->id);
@@ -131,7 +131,7 @@ void pn_bind_texture(pn_gpu *gpu, int unit, GLenum target, pn_gl texture, bool o
   GL(gpu, BindSampler)((GLuint)unit, own_parameters ? 0 : gpu->sampler_nearest);
 }
 
-/* ---- passes ---- */
+/* ---- passes ------------------------------------------------------------------------------------------------------ */
 
 static void attach(pn_gpu *gpu, GLenum point, const pn_attachment *a) {
   if (a->texture && a->target == GL_TEXTURE_2D_ARRAY)
@@ -198,7 +198,7 @@ pn_result pn_screen_begin(pn_gpu *gpu, const pn_pass *pass, const pn_program *pr
   return result;
 }
 
-/* ---- uniform buffers ---- */
+/* ---- uniform buffers --------------------------------------------------------------------------------------------- */
 
 pn_result pn_uniform_buffer_set(pn_gpu *gpu, pn_uniform_buffer *buffer, const void *data, size_t bytes) {
   if (!buffer->id) {

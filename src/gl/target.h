@@ -11,13 +11,15 @@ typedef struct {
   size_t bytes;
 } pn_texture;
 
-/* A texture of that shape, its contents undefined; sampling is nearest, clamped, without comparison. If texture already has that shape nothing happens.
- * The old one is freed only once the new one exists. layers 0: 2D; else a 2D array. */
+/* A texture of that shape, its contents undefined; sampling is nearest, clamped, without comparison. If texture
+ * already has that shape nothing happens. The old one is freed only once the new one exists. layers 0: 2D; else a 2D
+ * array. */
 pn_result pn_texture_shape(pn_gpu *gpu, pn_texture *texture, GLenum format, int width, int height, int layers, int levels);
 void pn_texture_free(pn_gpu *gpu, pn_texture *texture, bool abandon);
 void pn_texture_image(const pn_texture *texture, pn_image *out);
 
-/* Binds a texture for the passes that follow, with the library's nearest sampler (or none: the texture's own parameters). */
+/* Binds a texture for the passes that follow, with the library's nearest sampler (or none: the texture's own
+ * parameters). */
 void pn_bind_texture(pn_gpu *gpu, int unit, GLenum target, pn_gl texture, bool own_parameters);
 
 /* One image to draw into: level 0.. of a texture, and a layer when it is an array. */

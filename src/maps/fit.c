@@ -3,8 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Casters nearer to a rectangle than this part of the farthest caster's distance are taken to be that far: the map's depth has to reach both. Such a caster
- * is then seen a little too far from the light; what it hides, (s_Q - s_R) / (w_Q - w_R), hardly changes with w_Q that large. */
+/* Casters nearer to a rectangle than this part of the farthest caster's distance are taken to be that far: the map's
+ * depth has to reach both. Such a caster is then seen a little too far from the light; what it hides, (s_Q - s_R) /
+ * (w_Q - w_R), hardly changes with w_Q that large. */
 static const double nearest_share = 1.0 / 256.0;
 /* Bounds are put on a grid of 32 to 64 steps across the map. */
 static const double snap_steps = 64;
@@ -24,7 +25,7 @@ static void to_light(const fitting *f, const double corners[8][3], double out[8]
   for (int i = 0; i < 8; i++) pn_matrix_point(&f->light_from_scene, corners[i], out[i]);
 }
 
-/* ---- distances ---- */
+/* ---- distances --------------------------------------------------------------------------------------------------- */
 
 static bool too_far(const fitting *f, const double p[8][3]) {
   double range = f->request->range, least = INFINITY;
@@ -40,7 +41,7 @@ static void look_at_distance(void *user, const double corners[8][3]) {
   for (int i = 0; i < 8; i++) f->z_max = fmax(f->z_max, p[i][2]);
 }
 
-/* ---- one box ---- */
+/* ---- one box ----------------------------------------------------------------------------------------------------- */
 
 typedef struct { double least[3], most[3]; bool any; } span3;
 
@@ -74,7 +75,8 @@ static span3 box_span(const fitting *f, const double p[8][3]) {
   return span;
 }
 
-/* Cuts the span down to what can shadow the visible region: false when nothing is left. A caster at w reaches receivers within A (w - w_R). */
+/* Cuts the span down to what can shadow the visible region: false when nothing is left. A caster at w reaches
+ * receivers within A (w - w_R). */
 static bool cut_to_visible(const fitting *f, span3 *span) {
   const pn_region *visible = f->request->visible;
   if (!visible) return true;
@@ -82,7 +84,8 @@ static bool cut_to_visible(const fitting *f, span3 *span) {
   if (!(reach > 0)) return false;
   for (int i = 0; i < 2; i++) {
     double shear = f->request->shear[i];
-    double grow = (f->request->frame->extent[i] + fabs(shear)) * reach; /* a sheared map lies within the light's reach too */
+    /* a sheared map lies within the light's reach too */
+    double grow = (f->request->frame->extent[i] + fabs(shear)) * reach;
     double low = fmin(visible->least[i] - shear * visible->least[2], visible->least[i] - shear * visible->most[2]);
     double high = fmax(visible->most[i] - shear * visible->least[2], visible->most[i] - shear * visible->most[2]);
     span->least[i] = fmax(span->least[i], low - grow);
@@ -106,7 +109,7 @@ static void add_box(void *user, const double corners[8][3]) {
   f->any = true;
 }
 
-/* ---- the given box ---- */
+/* ---- the given box ----------------------------------------------------------------------------------------------- */
 
 static void fit_given(fitting *f) {
   const float *g = f->request->given;
@@ -121,10 +124,10 @@ static void fit_given(fitting *f) {
   }
 }
 
-/* ---- snapping ---- */
+/* ---- snapping ---------------------------------------------------------------------------------------------------- */
 
-/* The step for a range: a power of two, so that steps of neighbouring extents share their grid; chosen by the extent after snapping, so that
- * whatever fills the snapped bounds keeps them. */
+/* The step for a range: a power of two, so that steps of neighbouring extents share their grid; chosen by the extent
+ * after snapping, so that whatever fills the snapped bounds keeps them. */
 static double snap_step(double low, double high) {
   double step = exp2(ceil(log2((high - low) / snap_steps)));
   return ceil(high / step) - floor(low / step) > snap_steps ? 2 * step : step;
@@ -157,7 +160,7 @@ static void snap_depth(const fitting *f, pn_fit_result *out) {
   }
 }
 
-/* ---- borders and tiles ---- */
+/* ---- borders and tiles ------------------------------------------------------------------------------------------- */
 
 /* One empty texel on each side, as far as the map has that many. */
 static void add_border(double *low, double *high, int texels) {
@@ -244,7 +247,7 @@ void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_reques
   make_tiles(request, out);
 }
 
-/* ---- regions ---- */
+/* ---- regions ----------------------------------------------------------------------------------------------------- */
 
 pn_region pn_region_empty(void) {
   return (pn_region){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
@@ -257,8 +260,8 @@ static void region_add(pn_region *region, const double m[3]) {
   }
 }
 
-/* Corners stay homogeneous, so that those of an infinite frustum need no case of their own: h[3] is 0 there, or rounding of either sign, and
- * positive everywhere else before the camera. */
+/* Corners stay homogeneous, so that those of an infinite frustum need no case of their own: h[3] is 0 there, or
+ * rounding of either sign, and positive everywhere else before the camera. */
 void pn_region_add_frustum(pn_region *region, const pn_frame *frame, const pn_matrix *scene_from_clip, double depth_near) {
   pn_matrix light_from_scene = pn_light_from_scene(frame);
   pn_matrix light_from_clip = pn_matrix_multiply(&light_from_scene, scene_from_clip);

@@ -1,5 +1,5 @@
-/* Which part of light map space a light's maps cover: fitted to what casts, snapped, and split into tiles where the light sees
- * too wide. docs/space.md explains the steps. */
+/* Which part of light map space a light's maps cover: fitted to what casts, snapped, and split into tiles where the
+ * light sees too wide. docs/space.md explains the steps. */
 #ifndef PN_MAPS_FIT_H
 #define PN_MAPS_FIT_H
 
@@ -31,8 +31,8 @@ typedef struct {
 
 void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_request *request, pn_fit_result *out);
 
-/* An empty region, for adding to; and the region that a camera's frustum covers. scene_from_clip: inverse of projection * view, with depth_near, depth_far in
- * the projection's own convention. */
+/* An empty region, for adding to; and the region that a camera's frustum covers. scene_from_clip: inverse of
+ * projection * view, with depth_near, depth_far in the projection's own convention. */
 pn_region pn_region_empty(void);
 void pn_region_add_frustum(pn_region *region, const pn_frame *frame, const pn_matrix *scene_from_clip, double depth_near);
 

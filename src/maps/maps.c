@@ -5,7 +5,7 @@
 
 int pn_want_layers(const pn_maps_want *want) { return want->near_layers + (want->farthest ? 1 : 0); }
 
-/* ---- textures ---- */
+/* ---- textures ---------------------------------------------------------------------------------------------------- */
 
 pn_result pn_maps_shape(pn_gpu *gpu, pn_maps *maps, const pn_maps_want *want, int count, int width, int height) {
   int layers = pn_want_layers(want);
@@ -32,7 +32,7 @@ void pn_maps_free(pn_gpu *gpu, pn_maps *maps, bool abandon) {
   memset(maps, 0, sizeof *maps);
 }
 
-/* ---- drawing ---- */
+/* ---- drawing ----------------------------------------------------------------------------------------------------- */
 
 typedef struct {
   pn_gpu *gpu;
@@ -59,7 +59,8 @@ static pn_result draw_layer(const drawing *d, pn_attachment target, int layer, b
   return pn_casters_draw_pass(d->draw->casters, &draw);
 }
 
-/* Peeling draws into textures of its own and copies: reading one layer of an array while drawing another is undefined in GL 3.3. */
+/* Peeling draws into textures of its own and copies: reading one layer of an array while drawing another is undefined
+ * in GL 3.3. */
 static void copy_layer(const drawing *d, const pn_texture *from, int layer) {
   pn_gpu *gpu = d->gpu;
   pn_attachment to = layer_of(d, layer);
@@ -106,13 +107,14 @@ pn_result pn_maps_prepare(pn_gpu *gpu, const pn_maps_want *want) {
   return result == PN_OK ? pn_range_prepare(gpu, &want->range) : result;
 }
 
-/* ---- the uniform block ---- */
+/* ---- the uniform block ------------------------------------------------------------------------------------------- */
 
 static void axis_row(const pn_matrix *light_from_scene, int row, float out[4]) {
   for (int c = 0; c < 4; c++) out[c] = (float)light_from_scene->m[4 * c + row];
 }
 
-/* Vertices are snapped to the raster's sub-pixels, half a step at most on each axis; twice that for the arithmetic around it. */
+/* Vertices are snapped to the raster's sub-pixels, half a step at most on each axis; twice that for the arithmetic
+ * around it. */
 static float raster_error(const pn_gpu *gpu) { return (float)ldexp(1.0, -gpu->can.subpixel_bits); }
 
 void pn_block_frame(pn_light_block *block, const pn_frame *frame, const pn_gpu *gpu, int count, int layers, int width,

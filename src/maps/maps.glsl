@@ -1,5 +1,5 @@
-// A light and its list of maps: tiles of a wide light, each with its layers of depth. Techniques read maps only through these functions,
-// so they never know how a map is laid out.
+// A light and its list of maps: tiles of a wide light, each with its layers of depth. Techniques read maps only
+// through these functions, so they never know how a map is laid out.
 #include "space/space.glsl"
 
 #ifndef PN_LIGHTS
@@ -12,7 +12,8 @@ struct pn_LightData {
   vec4 scene_u, scene_v, scene_z;  // light frame from scene, by rows; forward shading only
   vec4 extent;                     // A_u, A_v, 1 for a sun, unused
   vec4 maps;                       // number of tiles, layers of each, width, height
-  vec4 range;                      // w of the nearest caster's plane, w_far, error of a stored depth in w, raster error in texels
+  // w of the nearest caster's plane, w_far, error of a stored depth in w, raster error in texels
+  vec4 range;
   vec4 parameters[3];              // the technique's, in the order of its table
   vec4 map_bounds[PN_MAPS_MAX];    // s0, t0, texels per unit of s, of t
   vec4 map_depth[PN_MAPS_MAX];     // w at depth 0, w per depth, shear
@@ -57,7 +58,8 @@ float pn_map_fetch(int light, sampler2DArray maps, int map, int layer, ivec2 tex
   return pn_map_w(light, map, texelFetch(maps, ivec3(texel, map * pn_map_layers(light) + layer), 0).r);
 }
 
-// The tile that a position lies in: the last one whose lower edges are not beyond it. Positions outside every tile get the nearest.
+// The tile that a position lies in: the last one whose lower edges are not beyond it. Positions outside every tile
+// get the nearest.
 int pn_map_at(int light, vec2 st) {
   int count = pn_map_count(light);
   int best = 0;

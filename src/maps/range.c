@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-/* ---- shapes ---- */
+/* ---- shapes ------------------------------------------------------------------------------------------------------ */
 
 static int power_above(int size) {
   int power = 1;
@@ -19,7 +19,8 @@ static int level_count(int size) {
 
 static int larger(int a, int b) { return a > b ? a : b; }
 
-/* The pyramid's first level has a texel for each of the map's, padded to powers of two; the stack has every level at full size, as array layers. */
+/* The pyramid's first level has a texel for each of the map's, padded to powers of two; the stack has every level at
+ * full size, as array layers. */
 pn_result pn_range_shape(pn_gpu *gpu, pn_texture *texture, const pn_range_kind *kind, int layers, int width, int height) {
   if (kind->structure == PN_RANGE_PYRAMID) {
     int w = power_above(width), h = power_above(height);
@@ -47,7 +48,7 @@ pn_result pn_range_prepare(pn_gpu *gpu, const pn_range_kind *kind) {
   return result;
 }
 
-/* ---- drawing ---- */
+/* ---- drawing ----------------------------------------------------------------------------------------------------- */
 
 typedef struct {
   pn_gpu *gpu;
@@ -74,7 +75,8 @@ static pn_result draw_pyramid(const range_step *s) {
   pn_attachment target = {range->id, range->target, s->level, s->layer};
   pn_result result = begin(s, target, width, height, &program);
   if (result != PN_OK) return result;
-  if (s->level > 0) { /* only the level below may be read: reading and drawing never meet. The shader then calls it level 0 */
+  /* only the level below may be read: reading and drawing never meet. The shader then calls it level 0 */
+  if (s->level > 0) {
     pn_bind_texture(s->gpu, PN_UNIT_RANGE, range->target, range->id, true);
     GL(s->gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, s->level - 1);
     GL(s->gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, s->level - 1);
@@ -83,7 +85,8 @@ static pn_result draw_pyramid(const range_step *s) {
   return PN_OK;
 }
 
-/* A stack's levels are layers of one array, which GL 3.3 does not let a pass read and draw at once: each is drawn aside and copied in. */
+/* A stack's levels are layers of one array, which GL 3.3 does not let a pass read and draw at once: each is drawn
+ * aside and copied in. */
 static pn_result draw_stack(const range_step *s, pn_texture *aside, int levels) {
   pn_gpu *gpu = s->gpu;
   const pn_texture *range = &s->maps->range;

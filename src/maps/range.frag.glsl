@@ -1,6 +1,6 @@
-// Largest and smallest w of neighbourhoods. A pyramid's level takes 2 x 2 texels of the one below; a stack's level four texels of the one below,
-// half a neighbourhood apart (Bitmask Soft Shadows, Fig. 7). The first level reads the depth map; over quads each texel there
-// stands for itself and its right and upper neighbours.
+// Largest and smallest w of neighbourhoods. A pyramid's level takes 2 x 2 texels of the one below; a stack's level
+// four texels of the one below, half a neighbourhood apart (Bitmask Soft Shadows, Fig. 7). The first level reads the
+// depth map; over quads each texel there stands for itself and its right and upper neighbours.
 #include "shaders/precision.glsl"
 #if PN_FIRST
 #include "maps/maps.glsl"
@@ -30,8 +30,8 @@ void main() {
 #if PN_FIRST
   vec2 range = pn_texels(at, PN_QUADS + 1);
 #elif PN_STACK
-  // Level i lies centred: from 2^(i-1) before the texel to 2^(i-1) - 1 after it. Its four parts of level i - 1 are centred a quarter
-  // aside; the first level's parts are the texel and those before it. The border is clamped.
+  // Level i lies centred: from 2^(i-1) before the texel to 2^(i-1) - 1 after it. Its four parts of level i - 1 are
+  // centred a quarter aside; the first level's parts are the texel and those before it. The border is clamped.
   ivec2 last = textureSize(pn_range, 0).xy - 1;
   int step = pn_place.y > 1 ? 1 << (pn_place.y - 2) : 0;
   ivec2 a = clamp(at - (pn_place.y > 1 ? step : 1), ivec2(0), last), b = clamp(at + step, ivec2(0), last);

@@ -1,5 +1,5 @@
-// Bounds, in (s, t, w), of the surfaces a camera sees: each pixel of the target covers PN_BLOCK x PN_BLOCK of the source. The first step reads
-// the receiver's depth, further ones what the last one wrote.
+// Bounds, in (s, t, w), of the surfaces a camera sees: each pixel of the target covers PN_BLOCK x PN_BLOCK of the
+// source. The first step reads the receiver's depth, further ones what the last one wrote.
 #include "shaders/precision.glsl"
 #define PN_BLOCK 16
 #if PN_FIRST

@@ -1,4 +1,5 @@
-// Sample 0 of a multisample depth texture, into a depth texture of our own. Desktop GL only: ES 3.00 has no such sampler.
+// Sample 0 of a multisample depth texture, into a depth texture of our own. Desktop GL only: ES 3.00 has no such
+// sampler.
 uniform sampler2DMS pn_work;
 uniform ivec4 pn_view;
 

@@ -8,7 +8,7 @@
 
 static pn_gpu *gpu_of(const pn_receiver *receiver) { return &receiver->object.context->gpu; }
 
-/* ---- the object ---- */
+/* ---- the object -------------------------------------------------------------------------------------------------- */
 
 pn_result pn_receiver_create(pn_context *context, pn_receiver **out) {
   if (!context) return PN_ERROR_ARGUMENT;
@@ -35,7 +35,7 @@ void pn_receiver_destroy(pn_receiver **receiver) {
   *receiver = NULL;
 }
 
-/* ---- what the source is ---- */
+/* ---- what the source is ------------------------------------------------------------------------------------------ */
 
 typedef struct {
   int depth_bits, stencil_bits, samples;
@@ -64,7 +64,8 @@ static void read_samples(pn_gpu *gpu, source_kind *kind) {
   if (kind->samples > 0) GL(gpu, GetMultisamplefv)(GL_SAMPLE_POSITION, 0, kind->at);
 }
 
-/* GL 3.3 cannot ask a texture for its target, and binding it to the wrong one is an error; attaching it to a framebuffer tells what is needed. */
+/* GL 3.3 cannot ask a texture for its target, and binding it to the wrong one is an error; attaching it to a
+ * framebuffer tells what is needed. */
 static pn_result inspect_texture(pn_gpu *gpu, pn_gl texture, source_kind *kind) {
   static const char *const wrong = "the depth texture is no 2D or 2D multisample texture with depth";
   if (!GL(gpu, IsTexture)(texture))
@@ -105,7 +106,7 @@ static GLenum kind_format(const source_kind *kind) {
   return kind->depth_bits == 32 ? GL_DEPTH_COMPONENT32 : GL_DEPTH_COMPONENT24;
 }
 
-/* ---- checks ---- */
+/* ---- checks ------------------------------------------------------------------------------------------------------ */
 
 static void texture_size(pn_gpu *gpu, GLenum target, pn_gl texture, int *width, int *height) {
   GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_DEPTH);
@@ -180,7 +181,7 @@ static float normal_error(pn_gpu *gpu, const pn_receiver_desc *d) {
   return step * (d->normal_encoding >= PN_NORMAL_OCTAHEDRON ? 1.5f : 0.87f);
 }
 
-/* ---- matrices ---- */
+/* ---- matrices ---------------------------------------------------------------------------------------------------- */
 
 static bool invert_view(const pn_receiver_desc *d, const float at[2], pn_matrix *scene_from_clip, pn_matrix *scene_from_pixel) {
   pn_matrix view = pn_matrix_from_floats(d->view), projection = pn_matrix_from_floats(d->projection);
@@ -193,8 +194,8 @@ static bool invert_view(const pn_receiver_desc *d, const float at[2], pn_matrix 
   return true;
 }
 
-/* Where stored depths are dense depends on the format, which may cut off instead of rounding; on top of that, interpolation in float is off
- * by two units of a depth near 1. */
+/* Where stored depths are dense depends on the format, which may cut off instead of rounding; on top of that,
+ * interpolation in float is off by two units of a depth near 1. */
 static void depth_error(const source_kind *kind, bool reversed, float quantum[4]) {
   double steps = kind->is_float ? 24 : kind->depth_bits > 24 ? 24 : kind->depth_bits;
   quantum[0] = (float)((kind->is_float ? 0 : ldexp(1, -(int)steps)) + 2 * 0x1p-24);
@@ -205,7 +206,7 @@ static void depth_error(const source_kind *kind, bool reversed, float quantum[4]
   }
 }
 
-/* ---- copies ---- */
+/* ---- copies ------------------------------------------------------------------------------------------------------ */
 
 static pn_result copy_framebuffer(pn_receiver *receiver, const pn_receiver_desc *d, const source_kind *kind) {
   pn_gpu *gpu = gpu_of(receiver);
@@ -241,7 +242,7 @@ static pn_result copy_multisample(pn_receiver *receiver, const pn_receiver_desc 
   return PN_OK;
 }
 
-/* ---- set ---- */
+/* ---- set --------------------------------------------------------------------------------------------------------- */
 
 static pn_result set_receiver(pn_receiver *receiver, pn_receiver_desc d) {
   pn_gpu *gpu = gpu_of(receiver);
@@ -285,7 +286,7 @@ pn_result pn_receiver_set(pn_receiver *receiver, const pn_receiver_desc *desc) {
   return pn_leave(receiver->object.context, result);
 }
 
-/* ---- for the passes that read it ---- */
+/* ---- for the passes that read it --------------------------------------------------------------------------------- */
 
 void pn_receiver_low_size(const pn_receiver *receiver, int *width, int *height) {
   int scale = receiver->desc.scale;
@@ -299,8 +300,8 @@ void pn_receiver_defines(const pn_receiver *receiver, char out[PN_RECEIVER_DEFIN
            d->mask_texture != 0);
 }
 
-/* The camera's centre in the light's frame: (0, 0, 1, 0) of clip space, where all rays meet, w = 1; or, for parallel rays, the
- * direction to it, away from the background, w = 0. */
+/* The camera's centre in the light's frame: (0, 0, 1, 0) of clip space, where all rays meet, w = 1; or, for parallel
+ * rays, the direction to it, away from the background, w = 0. */
 static void find_eye(const pn_receiver *receiver, const pn_matrix *light_from_scene, float eye[4]) {
   double centre[4] = {0, 0, receiver->desc.background_depth > 0.5f ? -1 : 1, 0}, h[4];
   pn_matrix light_from_clip = pn_matrix_multiply(light_from_scene, &receiver->scene_from_clip);
@@ -319,7 +320,8 @@ static void bind_textures(pn_receiver *receiver) {
   if (d->mask_texture) pn_bind_texture(gpu, PN_UNIT_MASK, GL_TEXTURE_2D, d->mask_texture, false);
 }
 
-/* Normals are vectors: the transpose of the inverse, which for a view (rotation, perhaps mirrored, uniformly scaled) is the inverse up to scale. */
+/* Normals are vectors: the transpose of the inverse, which for a view (rotation, perhaps mirrored, uniformly scaled)
+ * is the inverse up to scale. */
 static void light_from_normal(const pn_receiver_desc *d, const pn_matrix *light_from_scene, float out[9]) {
   pn_matrix m = *light_from_scene;
   if (d->normal_in_view) {

@@ -1,5 +1,5 @@
-// A receiver: the surface point that a pixel shows, in the light's space, with the errors its numbers carry. Those errors are the only
-// biases there are: derived from the precision of depth and map, not chosen.
+// A receiver: the surface point that a pixel shows, in the light's space, with the errors its numbers carry. Those
+// errors are the only biases there are: derived from the precision of depth and map, not chosen.
 #include "maps/maps.glsl"
 
 struct pn_Receiver {
@@ -32,16 +32,18 @@ pn_Receiver pn_receiver(int light, vec3 position, vec3 error, vec3 normal, float
   return r;
 }
 
-// Whether a stored sample at q = (s, t, w) can hide any of the light from the receiver: nearer, and in front of the tangent plane.
+// Whether a stored sample at q = (s, t, w) can hide any of the light from the receiver: nearer, and in front of the
+// tangent plane.
 bool pn_blocks(pn_Receiver r, vec3 q) {
   vec3 d = q - r.m;
   float lever = abs(d.x) + abs(d.y) + r.reach * abs(d.z);
   return d.z > r.epsilon_w && pn_plane_front(r.n, r.k, q, r.m) > r.epsilon_plane + r.sigma * lever;
 }
 
-// The same for a sample that stands for a whole texel, as in a hard shadow's comparison: it was taken up to a texel aside of the line it is asked
-// about, and a surface that bends towards the light (a crease, a facetted mesh) rises by up to that much in front of the tangent plane on the
-// way. What is lower than that the map cannot tell from the surface itself.
+// The same for a sample that stands for a whole texel, as in a hard shadow's comparison: it was taken up to a texel
+// aside of the line it is asked about, and a surface that bends towards the light (a crease, a facetted mesh) rises
+// by up to that much in front of the tangent plane on the way. What is lower than that the map cannot tell from the
+// surface itself.
 bool pn_blocks_apart(int light, pn_Receiver r, vec3 q) {
   vec2 aside = abs(q.xy - r.m.xy), texel = 1.0 / pn_lights[light].map_bounds[0].zw;
   float rise = min(max(aside.x, aside.y), max(texel.x, texel.y));

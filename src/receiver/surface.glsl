@@ -1,5 +1,6 @@
-// From the host's depth to surface points. Depth is affine along any plane in pixel coordinates, under perspective too, so planes are found
-// there and carried over by the inverse transpose: no difference of nearly equal positions is ever taken.
+// From the host's depth to surface points. Depth is affine along any plane in pixel coordinates, under perspective
+// too, so planes are found there and carried over by the inverse transpose: no difference of nearly equal positions
+// is ever taken.
 
 uniform highp sampler2D pn_depth;
 #if PN_NORMALS
@@ -48,8 +49,9 @@ void pn_position(ivec2 pixel, float depth, out vec3 p, out vec3 error) {
   vec4 v = vec4(vec2(pixel) + 0.5, depth, 1.0);
   vec4 h = pn_light_from_pixel * v;
   p = h.xyz / h.w;
-  // Depth's own error moves the point along the ray. A float matrix moves it anywhere: each term of a row is rounded as an entry, as a product
-  // and in three sums, and a quotient may be off by 2.5 units in the last place: five roundings of 2^-24 each time.
+  // Depth's own error moves the point along the ray. A float matrix moves it anywhere: each term of a row is rounded
+  // as an entry, as a product and in three sums, and a quotient may be off by 2.5 units in the last place: five
+  // roundings of 2^-24 each time.
   vec4 along = pn_light_from_pixel[2];
   vec4 a = abs(v);
   vec4 sum = abs(pn_light_from_pixel[0]) * a.x + abs(pn_light_from_pixel[1]) * a.y + abs(pn_light_from_pixel[2]) * a.z +
@@ -59,8 +61,8 @@ void pn_position(ivec2 pixel, float depth, out vec3 p, out vec3 error) {
 }
 
 #if !PN_NORMALS
-// Slope of depth along one axis from five neighbours, and a bound on its error. At an edge the side is taken on which depth goes on in a
-// straight line; where both do, a wider baseline makes the error smaller.
+// Slope of depth along one axis from five neighbours, and a bound on its error. At an edge the side is taken on which
+// depth goes on in a straight line; where both do, a wider baseline makes the error smaller.
 vec2 pn_slope(ivec2 pixel, ivec2 axis, float d0) {
   float d[5];
   bool has[5];
@@ -78,7 +80,8 @@ vec2 pn_slope(ivec2 pixel, ivec2 axis, float d0) {
     return wide ? vec2(0.25 * (d[4] - d[0]), 0.5 * q) : vec2(0.5 * (d[3] - d[1]), q);
   }
   if (!has[1] && !has[3]) return vec2(0.0, 0.0); // a surface one pixel wide: as if it faced the camera
-  // Where neither side goes on straight, faces are two pixels wide or less: the slope stays open by as much as it bends.
+  // Where neither side goes on straight, faces are two pixels wide or less: the slope stays open by as much as it
+  // bends.
   float open = min(left, right) > 4.0 * q ? min(left, right) : 0.0;
   return left < right ? vec2(d0 - d[1], 2.0 * q + open) : vec2(d[3] - d0, 2.0 * q + open);
 }
@@ -87,7 +90,8 @@ void pn_tangent_plane(ivec2 pixel, float depth, out vec3 n, out float sigma) {
   vec2 gx = pn_slope(pixel, ivec2(1, 0), depth);
   vec2 gy = pn_slope(pixel, ivec2(0, 1), depth);
   vec2 at = vec2(pixel) + 0.5;
-  // The plane depth = depth + gx (x - at.x) + gy (y - at.y) as a covector, taken to the light's frame by the transpose of the inverse.
+  // The plane depth = depth + gx (x - at.x) + gy (y - at.y) as a covector, taken to the light's frame by the
+  // transpose of the inverse.
   vec4 plane = vec4(gx.x, gy.x, -1.0, depth - gx.x * at.x - gy.x * at.y) * pn_pixel_from_light;
   vec3 per_gx = (vec4(1.0, 0.0, 0.0, -at.x) * pn_pixel_from_light).xyz;
   vec3 per_gy = (vec4(0.0, 1.0, 0.0, -at.y) * pn_pixel_from_light).xyz;

@@ -1,6 +1,6 @@
-// Brings visibility from 1/scale of the resolution up: bilinear over those of the four low-resolution samples around the pixel
-// that lie in its tangent plane and face as it does; where none does, or where they disagree so much that a shadow's edge may run
-// between them, the pixel is computed itself.
+// Brings visibility from 1/scale of the resolution up: bilinear over those of the four low-resolution samples around
+// the pixel that lie in its tangent plane and face as it does; where none does, or where they disagree so much that a
+// shadow's edge may run between them, the pixel is computed itself.
 
 uniform highp sampler2D pn_work; // the low-resolution visibility
 

@@ -1,7 +1,7 @@
 // The part of the light above a receiver's horizon.
 
-// Share of [-A_u, A_u] x [-A_v, A_v] where n . x > k. The integral over one axis of a line's clamped height over the other has a closed
-// form: F, the integral of clamp(h, 0, 1), taken at the ends.
+// Share of [-A_u, A_u] x [-A_v, A_v] where n . x > k. The integral over one axis of a line's clamped height over the
+// other has a closed form: F, the integral of clamp(h, 0, 1), taken at the ends.
 float pn_area_above(vec2 extent, vec2 n, float k) {
   vec2 a = abs(n) * extent; // by symmetry both slopes may be positive
   if (a.x + a.y <= k) return 0.0;

@@ -4,8 +4,8 @@
 
 const char *const pn_hierarchy_names[] = {"mssm", "hsm", "none", NULL};
 
-/* Covering quads exactly takes loops of its own, and software GL ends a shader's loops after 65535 turns in all: a scan of every texel
- * would not fit, a descent that merges nothing does. */
+/* Covering quads exactly takes loops of its own, and software GL ends a shader's loops after 65535 turns in all: a
+ * scan of every texel would not fit, a descent that merges nothing does. */
 static bool descends(const pn_search_values *v) { return v->merge > 0 || v->primitive == PN_PRIMITIVE_QUAD_EXACT; }
 
 pn_range_kind pn_search_range(const pn_search_values *v) {

@@ -1,14 +1,16 @@
-// Finds the micro-primitives that can hide light from a receiver, in one layer of one map, and hands them to the technique's cover. The technique defines
-// before this file: pn_Cover, pn_cover_rectangle, pn_cover_quad, pn_cover_or_ask, pn_is_full, and the macros
+// Finds the micro-primitives that can hide light from a receiver, in one layer of one map, and hands them to the
+// technique's cover. The technique defines before this file: pn_Cover, pn_cover_rectangle, pn_cover_quad,
+// pn_cover_or_ask, pn_is_full, and the macros
 //   PN_PRIMITIVE  what a texel stands for, see primitive.glsl
 //   PN_GAPS       patches are widened to meet their left and lower neighbours
 //   PN_EDGES      quads that lack a corner are covered by the parts that belong to the others
-//   PN_DESCENT    1: adaptive descent of the range pyramid; 0: every texel of the window, or of a coarser level past the cap
+// PN_DESCENT    1: adaptive descent of the range pyramid; 0: every texel of the window, or of a coarser level past
+// the cap
 //   PN_REFINE     what narrows the window first: 0 nothing, 1 the range pyramid, 2 the range stack
 #include "search/window.glsl"
 
-// What the search did, for looking at (docs/techniques/bitmask.md): class (0 not searched, 1 lit, 2 umbra, 3 penumbra), blocks visited,
-// primitives covered, texels in the window.
+// What the search did, for looking at (docs/techniques/bitmask.md): class (0 not searched, 1 lit, 2 umbra, 3
+// penumbra), blocks visited, primitives covered, texels in the window.
 vec4 pn_search_done = vec4(0.0);
 
 struct pn_Window {
@@ -16,7 +18,7 @@ struct pn_Window {
   vec2 w;          // largest and smallest there
 };
 
-// ---- plane rejection over a box of (s, t, w), relative to the receiver --------------------------------------------------
+// ---- plane rejection over a box of (s, t, w), relative to the receiver ---------------------------------------------
 
 // Least and greatest pn_plane_front, with the receiver's own uncertainty taken off and added.
 vec2 pn_front_range(pn_Receiver r, vec2 low, vec2 high, float dw_least, float dw_most) {
@@ -29,7 +31,7 @@ vec2 pn_front_range(pn_Receiver r, vec2 low, vec2 high, float dw_least, float dw
   return vec2(least, most) - slack;
 }
 
-// ---- single primitives ----------------------------------------------------------------------------------------------------
+// ---- single primitives ---------------------------------------------------------------------------------------------
 
 bool pn_texel_hides(int light, pn_Receiver r, int map, ivec2 texel, float w) {
   // A patch reaches half a texel beyond its sample, over creases.
@@ -49,7 +51,8 @@ void pn_texel_patch(int light, highp sampler2DArray maps, pn_Receiver r, int map
   vec2 low = pn_map_st(light, map, vec2(texel)) - r.m.xy, high = pn_map_st(light, map, vec2(texel) + 1.0) - r.m.xy;
   vec2 a = pn_on_light(light, low, w - r.m.z), b = pn_on_light(light, high, w - r.m.z);
 #if PN_GAPS
-  // Guennebaud et al. 2006: where a neighbour ends, seen from the receiver, before this patch begins, the patch is drawn out to it.
+  // Guennebaud et al. 2006: where a neighbour ends, seen from the receiver, before this patch begins, the patch is
+  // drawn out to it.
   float left = pn_map_fetch(light, maps, map, layer, texel - ivec2(1, 0));
   float below = pn_map_fetch(light, maps, map, layer, texel - ivec2(0, 1));
   if (left > r.m.z + r.epsilon_w && pn_texel_hides(light, r, map, texel - ivec2(1, 0), left)) {
@@ -64,8 +67,9 @@ void pn_texel_patch(int light, highp sampler2DArray maps, pn_Receiver r, int map
 }
 
 #if PN_PRIMITIVE != PN_PATCH
-// A quad, or a block of quads taken as one, seen from the receiver: its corners in the order (0, 0), (1, 0), (0, 1), (1, 1), and the
-// rectangle through the middles of its edges (section 4). Corners keep their own w, so that neighbours meet.
+// A quad, or a block of quads taken as one, seen from the receiver: its corners in the order (0, 0), (1, 0), (0, 1),
+// (1, 1), and the rectangle through the middles of its edges (section 4). Corners keep their own w, so that
+// neighbours meet.
 struct pn_Quad {
   vec4 x, y;      // corners on the light
   vec2 low, high; // the rectangle
@@ -97,7 +101,8 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, in
   vec4 hide = there * vec4(greaterThan(front, vec4(0.0)));
   pn_Quad q;
   q.whole = hide == vec4(1.0);
-  // A single corner stands for its quarter of the cell, as a patch would, and like one must rise above what a crease may be.
+  // A single corner stands for its quarter of the cell, as a patch would, and like one must rise above what a crease
+  // may be.
   vec2 cell = high - low;
   vec4 rise = min(max(abs(s), abs(t)), vec4(max(cell.x, cell.y)));
   if (!q.whole) hide *= vec4(greaterThan(front, rise));
@@ -143,7 +148,7 @@ vec2 pn_block_st(int light, int map, ivec2 texel) {
 #endif
 }
 
-// ---- the window -------------------------------------------------------------------------------------------------------------
+// ---- the window ----------------------------------------------------------------------------------------------------
 
 // Texels within reach of casters up to w. Tiles leave their border to their neighbours.
 void pn_window_texels(int light, pn_Receiver r, int map, float w, out ivec2 low, out ivec2 high) {
@@ -159,7 +164,8 @@ void pn_window_texels(int light, pn_Receiver r, int map, float w, out ivec2 low,
 }
 
 #if PN_REFINE == 2
-// The range stack keeps its levels as array layers: level i holds largest and smallest w of the 2^i x 2^i texels centred on each texel.
+// The range stack keeps its levels as array layers: level i holds largest and smallest w of the 2^i x 2^i texels
+// centred on each texel.
 vec2 pn_stack_at(int light, highp sampler2DArray stack, int map, int layer, int level, ivec2 texel) {
   int levels = textureSize(stack, 0).z / (pn_map_count(light) * pn_map_layers(light));
   ivec2 at = clamp(texel, ivec2(0), pn_map_size(light) - 1);
@@ -176,14 +182,16 @@ int pn_stack_level(int extent) {
 vec2 pn_window_range(int light, highp sampler2DArray stack, int map, int layer, ivec2 low, ivec2 high, bool four) {
   int extent = max(high.x - low.x, high.y - low.y) + 1;
   if (!four) {
-    // The centre of a neighbourhood of even size is half a texel off; over the whole map that does not matter, and there is no level above it.
+    // The centre of a neighbourhood of even size is half a texel off; over the whole map that does not matter, and
+    // there is no level above it.
     ivec2 size = pn_map_size(light);
     int level = pn_stack_level(min(extent + 1, max(size.x, size.y)));
     return pn_stack_at(light, stack, map, layer, level, (low + high + 1) / 2);
   }
   // Section 5: four neighbourhoods of half the size, pushed into the window's corners.
   int level = pn_stack_level((extent + 1) / 2);
-  int before = (1 << level) / 2, after = (1 << level) - before - 1; // texels of a neighbourhood before and after its centre
+  // texels of a neighbourhood before and after its centre
+  int before = (1 << level) / 2, after = (1 << level) - before - 1;
   ivec2 a = low + before, b = max(high - after, low + before);
   vec2 w = pn_stack_at(light, stack, map, layer, level, a);
   vec2 w1 = pn_stack_at(light, stack, map, layer, level, ivec2(b.x, a.y));
@@ -218,18 +226,20 @@ bool pn_is_umbra(int light, pn_Receiver r, int map, pn_Window window) {
   if (window.w.y <= r.m.z + r.epsilon_w) return false;
   vec2 reach = pn_search_window(pn_extent(light), window.w.x, r.m.z);
   vec2 low = pn_block_st(light, map, window.low) - r.m.xy, high = pn_block_st(light, map, window.high + 1) - r.m.xy;
-  bool inside = all(lessThanEqual(low, -reach)) && all(greaterThanEqual(high, reach)); // not cut off by the map's border
+  // not cut off by the map's border
+  bool inside = all(lessThanEqual(low, -reach)) && all(greaterThanEqual(high, reach));
   return inside && pn_front_range(r, low, high, window.w.y - r.m.z, window.w.x - r.m.z).x > 0.0;
 }
 
-// ---- every texel ---------------------------------------------------------------------------------------------------------------
+// ---- every texel ---------------------------------------------------------------------------------------------------
 
 #if !PN_DESCENT
 // Texels of a row that one turn of the loop takes: software GL ends a shader's loops after 65535 turns in all.
 #define PN_ROW 8
 #define PN_TEXELS_MAX 360000
 
-// A texel of a coarser level past the cap, on the pyramid's fixed grid: nearest surface of its block, as one patch (section 5).
+// A texel of a coarser level past the cap, on the pyramid's fixed grid: nearest surface of its block, as one patch
+// (section 5).
 void pn_coarse_patch(int light, highp sampler2DArray range, pn_Receiver r, int map, int layer, ivec2 block, int level, inout pn_Cover c) {
 #if PN_REFINE == 2
   vec2 w = pn_stack_at(light, range, map, layer, level, (block << level) + ((1 << level) >> 1));
@@ -274,7 +284,7 @@ void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, p
 }
 #endif
 
-// ---- adaptive descent --------------------------------------------------------------------------------------------------------------
+// ---- adaptive descent ----------------------------------------------------------------------------------------------
 
 #if PN_DESCENT
 #define PN_SKIP 0
@@ -283,8 +293,8 @@ void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, p
 
 struct pn_Rectangle { vec2 low, high; }; // on the light, 0 to 1
 
-// One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Only one field is made: of the rectangle that the block
-// becomes, or, when it does not become one, of what it could hide at most.
+// One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Only one field is made:
+// of the rectangle that the block becomes, or, when it does not become one, of what it could hide at most.
 int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, ivec2 node, int level,
                    float merge, inout pn_Cover c) {
   vec2 dw = texelFetch(range, ivec3(node, map * pn_map_layers(light) + layer), level).rg - r.m.z; // largest, smallest
@@ -302,14 +312,16 @@ int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray ra
 #endif
   float dw_least = max(dw.y, r.epsilon_w);
   vec2 front = pn_front_range(r, low + margin, high - margin, dw_least, dw.x);
-  if (dw.x <= r.epsilon_w || beside || front.y <= rise) return PN_SKIP; // not nearer, not before the light, or behind the tangent plane
+  // not nearer, not before the light, or behind the tangent plane
+  if (dw.x <= r.epsilon_w || beside || front.y <= rise) return PN_SKIP;
   // Where the block's edges fall on the light, at its nearest and at its farthest.
   vec2 scale = 0.5 / extent;
   vec2 a0 = clamp(0.5 + scale * low / dw.x, 0.0, 1.0), a1 = clamp(0.5 + scale * low / dw_least, 0.0, 1.0);
   vec2 b0 = clamp(0.5 + scale * high / dw.x, 0.0, 1.0), b1 = clamp(0.5 + scale * high / dw_least, 0.0, 1.0);
   vec2 moved = max(abs(a0 - a1), abs(b0 - b1));
   bool one = dw.y > r.epsilon_w && front.x > rise && max(moved.x, moved.y) <= merge;
-  // A block that is itself no larger on the light than what may be moved is looked at no closer: its corners stand for it, as a texel's do.
+  // A block that is itself no larger on the light than what may be moved is looked at no closer: its corners stand
+  // for it, as a texel's do.
   vec2 size = scale * (high - low) / dw.x;
   bool leaf = level == 0 || PN_PRIMITIVE != PN_PATCH && max(size.x, size.y) <= merge;
   pn_Rectangle most = pn_Rectangle(min(a0, a1), max(b0, b1));
@@ -352,8 +364,9 @@ bool pn_walk(inout ivec2 node, inout int level, int top, ivec2 first, ivec2 last
   return node.y <= last.y;
 }
 
-// Depth first over the blocks that the window touches, without a stack. Where quads are covered exactly, the inner loop goes on until one must be, so
-// that neighbouring pixels do that together. Software GL ends a shader's loops after 65535 turns in all.
+// Depth first over the blocks that the window touches, without a stack. Where quads are covered exactly, the inner
+// loop goes on until one must be, so that neighbouring pixels do that together. Software GL ends a shader's loops
+// after 65535 turns in all.
 void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, pn_Window window,
                 float merge, inout pn_Cover c) {
   int extent = max(window.high.x - window.low.x, window.high.y - window.low.y), top = 0;
@@ -386,12 +399,13 @@ void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range
 }
 #endif
 
-// ---- one layer of one map --------------------------------------------------------------------------------------------------------------
+// ---- one layer of one map ------------------------------------------------------------------------------------------
 
 void pn_search(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, inout pn_Cover c) {
   pn_Window window = pn_find_window(light, range, r, map, layer);
   pn_search_done.x = max(pn_search_done.x, 1.0);
-  if (any(lessThan(window.high, window.low)) || window.w.x <= r.m.z + r.epsilon_w) return; // lit, as far as this layer goes
+  // lit, as far as this layer goes
+  if (any(lessThan(window.high, window.low)) || window.w.x <= r.m.z + r.epsilon_w) return;
   pn_search_done.w += float((window.high.x - window.low.x + 1) * (window.high.y - window.low.y + 1));
   if (pn_is_umbra(light, r, map, window)) {
     pn_cover_rectangle(c, vec2(0.0), vec2(1.0));

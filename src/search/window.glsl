@@ -1,7 +1,9 @@
-// The search window: texels that can block a receiver, from the light's extent and the nearest caster there, narrowed by the range pyramid.
+// The search window: texels that can block a receiver, from the light's extent and the nearest caster there, narrowed
+// by the range pyramid.
 #include "receiver/receiver.glsl"
 
-// Largest and smallest w in a window of texels (both ends included), from the pyramid whose level i has them over 2^i x 2^i texels. Four samples of the coarsest level that is still no larger than the window.
+// Largest and smallest w in a window of texels (both ends included), from the pyramid whose level i has them over 2^i
+// x 2^i texels. Four samples of the coarsest level that is still no larger than the window.
 vec2 pn_range_over(int light, highp sampler2DArray pyramid, int map, int layer, ivec2 low, ivec2 high) {
   ivec2 last = pn_map_size(light) - 1;
   if (any(lessThan(high, ivec2(0))) || any(greaterThan(low, last))) return vec2(PN_NOTHING);
@@ -23,8 +25,8 @@ vec2 pn_range_over(int light, highp sampler2DArray pyramid, int map, int layer, 
   return range;
 }
 
-// Largest w that any map has inside the receiver's search window; at first the window reaches as far as the nearest caster of all could need, then as far
-// as the nearest caster found in it needs.
+// Largest w that any map has inside the receiver's search window; at first the window reaches as far as the nearest
+// caster of all could need, then as far as the nearest caster found in it needs.
 float pn_window_nearest(int light, highp sampler2DArray pyramid, pn_Receiver r) {
   float w_max = pn_lights[light].range.x;
   for (int step = 0; step < 2; step++) {

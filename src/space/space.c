@@ -118,8 +118,9 @@ void pn_depth_scale(double w_near, double w_far, double w_of_depth[2]) {
   w_of_depth[1] = scale;
 }
 
-/* Rows, with a = 2 / (s1 - s0):  x_clip / w_clip = a (s' - s0) - 1,  z_clip / w_clip = 2 (w - w_near) / (w_far - w_near) - 1,
- * where w_clip = z for a rectangle (s' = (x - shear) / z, w = 1 / z) and 1 for a sun (s' = x + shear z, w = -z). */
+/* Rows, with a = 2 / (s1 - s0):  x_clip / w_clip = a (s' - s0) - 1,  z_clip / w_clip = 2 (w - w_near) / (w_far -
+ * w_near) - 1, where w_clip = z for a rectangle (s' = (x - shear) / z, w = 1 / z) and 1 for a sun (s' = x + shear z,
+ * w = -z). */
 pn_matrix pn_clip_from_light(bool sun, const double bounds[4], double w_near, double w_far, const double shear[2]) {
   pn_matrix out = {{0}};
   double depth = 2 / (w_far - w_near);

@@ -1,10 +1,11 @@
-/* Light map space (s, t, w): one formula for everything (docs/space.md). space.glsl has the same functions under the same
- * names; tests/unit/test_space.c holds the two together.
+/* Light map space (s, t, w): one formula for everything (docs/space.md). space.glsl has the same functions under the
+ * same names; tests/unit/test_space.c holds the two together.
  *
  *   rectangle  s = x / z   t = y / z   w = 1 / z     with (x, y, z) in the light's frame: origin at its centre,
  *   sun        s = x       t = y       w = -z        z where it shines
  *
- * A receiver R sees an occluder Q in front of the light's point ((s_Q - s_R) / (w_Q - w_R), (t_Q - t_R) / (w_Q - w_R)). */
+ * A receiver R sees an occluder Q in front of the light's point ((s_Q - s_R) / (w_Q - w_R), (t_Q - t_R) / (w_Q -
+ * w_R)). */
 #ifndef PN_SPACE_SPACE_H
 #define PN_SPACE_SPACE_H
 
@@ -17,8 +18,8 @@ typedef struct {
   bool sun;
 } pn_frame;
 
-/* Stored depths keep this far from 0 and 1, so that those two mean 'nothing here', even where depth clamping moved a caster to the
- * end of the range. */
+/* Stored depths keep this far from 0 and 1, so that those two mean 'nothing here', even where depth clamping moved a
+ * caster to the end of the range. */
 #define PN_DEPTH_MARGIN (1.0 / 65536.0)
 
 /* The most a map may open: tangent of 85 degrees to each side. */
@@ -36,7 +37,8 @@ void pn_light_point(const double m[3], bool sun, double p[3]);
 void pn_back_project(const double q[3], const double r[3], double light_point[2]);
 /* n . P for a rectangle, n_z for a sun: with it, horizons and planes are the same formula for both. */
 double pn_plane_offset(const double n[3], const double p[3], bool sun);
-/* How far Q lies in front of R's tangent plane, times w_Q for a rectangle: no division, so no sign flips. k = pn_plane_offset. */
+/* How far Q lies in front of R's tangent plane, times w_Q for a rectangle: no division, so no sign flips. k =
+ * pn_plane_offset. */
 double pn_plane_front(const double n[3], double k, const double q[3], const double r[3]);
 /* Above 0 where the light's point lies above R's horizon. */
 double pn_horizon(const double n[3], double k, const double light_point[2]);
@@ -48,8 +50,9 @@ double pn_penumbra_extent(double extent, double w, double w_min);
 /* Depth is affine in w: w = w_of_depth[0] + w_of_depth[1] * stored depth. */
 void pn_depth_scale(double w_near, double w_far, double w_of_depth[2]);
 
-/* Clip space of a map that covers [s0, s1] x [t0, t1] between w_near and w_far, for coordinates in the light's frame; sheared, it is the map
- * as seen from the light's point (shear[0], shear[1]): s' = s - shear w, for both kinds of light. */
+/* Clip space of a map that covers [s0, s1] x [t0, t1] between w_near and w_far, for coordinates in the light's frame;
+ * sheared, it is the map as seen from the light's point (shear[0], shear[1]): s' = s - shear w, for both kinds of
+ * light. */
 pn_matrix pn_clip_from_light(bool sun, const double bounds[4], double w_near, double w_far, const double shear[2]);
 
 #endif

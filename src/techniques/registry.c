@@ -28,7 +28,7 @@ const pn_technique_class *pn_technique_class_of(const pn_technique *table) {
   return NULL;
 }
 
-/* ---- specs: "name" or "name:key=value,key=value" ---- */
+/* ---- specs: "name" or "name:key=value,key=value" ----------------------------------------------------------------- */
 
 typedef struct {
   char *why;
@@ -145,7 +145,8 @@ static pn_result read_all_pairs(const pn_technique *t, const char *text, double 
   return PN_OK;
 }
 
-/* A preset is the ground that the other parameters stand on, wherever it is named: read once to find it, and again on top of it. */
+/* A preset is the ground that the other parameters stand on, wherever it is named: read once to find it, and again on
+ * top of it. */
 static pn_result read_pairs(const pn_technique *t, const char *text, double *values, const explanation *e) {
   if (!text) return PN_OK;
   const pn_technique_class *technique = pn_technique_class_of(t);

@@ -32,7 +32,8 @@ typedef struct {
   void (*preset)(int choice, double *values);
   /* A gathering technique is a shader with pn_technique(); it needs nothing else. */
   const char *shader;
-  /* #defines that the shader depends on, as lines; what may change without compiling is read from the block. NULL: none. */
+  /* #defines that the shader depends on, as lines; what may change without compiling is read from the block. NULL:
+   * none. */
   void (*defines)(const double *values, char out[PN_TECHNIQUE_DEFINES]);
   bool searches; /* the shader includes search/search.glsl and tells what it did */
   /* Others draw by themselves, and compile by themselves. */
@@ -46,7 +47,8 @@ const pn_technique_class *pn_technique_class_of(const pn_technique *table);
 /* The shader's defines for these values: "" where it has none. */
 void pn_technique_defines(const pn_technique_class *technique, const double *values, char out[PN_TECHNIQUE_DEFINES]);
 
-/* Sets one of values by the parameter's name; false, with the message that fits, when there is none or the value is not one of its own. */
+/* Sets one of values by the parameter's name; false, with the message that fits, when there is none or the value is
+ * not one of its own. */
 bool pn_parameter_set(const pn_technique *table, const char *name, double value, double *values, pn_message *message);
 
 extern const pn_technique_class pn_technique_hard, pn_technique_pcf, pn_technique_pcss, pn_technique_average,

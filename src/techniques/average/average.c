@@ -23,7 +23,8 @@ static double mirrored(uint32_t i) {
   return value;
 }
 
-/* Point i of count on [-A, A]^2: the Hammersley set, moved to the middle of its strata. For powers of two it is a (0, m, 2)-net in base 2. */
+/* Point i of count on [-A, A]^2: the Hammersley set, moved to the middle of its strata. For powers of two it is a (0,
+ * m, 2)-net in base 2. */
 static void light_point(const pn_frame *frame, int i, int count, double out[2]) {
   out[0] = frame->extent[0] * (2 * (i + 0.5) / count - 1);
   out[1] = frame->extent[1] * (2 * (mirrored((uint32_t)i) + 0.5 / count) - 1);

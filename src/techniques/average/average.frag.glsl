@@ -1,5 +1,5 @@
-// The average of many hard shadows, each from its own point of the light: what the others are approximations of. One pass reads a
-// batch of maps and adds to the counts of the passes before it.
+// The average of many hard shadows, each from its own point of the light: what the others are approximations of. One
+// pass reads a batch of maps and adds to the counts of the passes before it.
 #include "shaders/precision.glsl"
 #include "search/lookup.glsl"
 #include "receiver/surface.glsl"

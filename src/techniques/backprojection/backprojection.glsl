@@ -1,5 +1,6 @@
-// Soft shadow mapping by backprojection (Guennebaud, Barthe, Paulin 2006): the areas that micro-primitives hide of the light are added up. Primitives that
-// overlap on the light are counted twice: the fault that bit fields mend. Layers are therefore merged by maximum (Bitmask Soft Shadows, Fig. 9d).
+// Soft shadow mapping by backprojection (Guennebaud, Barthe, Paulin 2006): the areas that micro-primitives hide of
+// the light are added up. Primitives that overlap on the light are counted twice: the fault that bit fields mend.
+// Layers are therefore merged by maximum (Bitmask Soft Shadows, Fig. 9d).
 #include "search/primitive.glsl"
 
 #define pn_Cover float
@@ -9,13 +10,15 @@ void pn_cover_rectangle(inout pn_Cover c, vec2 low, vec2 high) {
   c += size.x * size.y;
 }
 
-// Section 4: corners clamped to the light, which keeps neighbouring quads watertight; then the quad's area from its diagonals.
+// Section 4: corners clamped to the light, which keeps neighbouring quads watertight; then the quad's area from its
+// diagonals.
 void pn_cover_quad(inout pn_Cover c, vec2 p00, vec2 p10, vec2 p01, vec2 p11) {
   vec2 a = clamp(p11, 0.0, 1.0) - clamp(p00, 0.0, 1.0), b = clamp(p01, 0.0, 1.0) - clamp(p10, 0.0, 1.0);
   c += 0.5 * abs(a.x * b.y - a.y * b.x);
 }
 
-// Covers the rectangle, or asks whether it is hidden already: a sum does not know, unless nothing of it lies on the light.
+// Covers the rectangle, or asks whether it is hidden already: a sum does not know, unless nothing of it lies on the
+// light.
 bool pn_cover_or_ask(inout pn_Cover c, vec2 low, vec2 high, bool cover) {
   if (cover) pn_cover_rectangle(c, low, high);
   return cover || any(lessThanEqual(high, low));

@@ -1,5 +1,6 @@
-// Bitmask Soft Shadows (Schwarz and Stamminger 2007): every micro-primitive sets the bits of the light's sample points that it hides. Overlaps set the same
-// bits, so occluders fuse as they should, and any number of maps may add theirs.
+// Bitmask Soft Shadows (Schwarz and Stamminger 2007): every micro-primitive sets the bits of the light's sample
+// points that it hides. Overlaps set the same bits, so occluders fuse as they should, and any number of maps may add
+// theirs.
 #include "techniques/bitmask/field.glsl"
 #include "search/primitive.glsl"
 

@@ -1,8 +1,10 @@
-// Bit fields over the light (Schwarz and Stamminger 2007, section 3): each bit is one sample point, set where something hides it.
-// Coordinates run from 0 to 1 over the light. PN_SAMPLES: 8, 16, 32 for regular grids of that many points a side, 17 for 16 x 16 jittered.
+// Bit fields over the light (Schwarz and Stamminger 2007, section 3): each bit is one sample point, set where
+// something hides it. Coordinates run from 0 to 1 over the light. PN_SAMPLES: 8, 16, 32 for regular grids of that
+// many points a side, 17 for 16 x 16 jittered.
 //
-// Sample (i, j) of a regular grid lies at (i + 1/2, j + 1/2) / N. The jittered grid tiles the rotated-grid pattern of 2 x 2 points: its
-// offset along x depends on the row's parity alone, along y on the column's: (3/4 or 1/4, 1/4 or 3/4). So rectangles stay products of ranges.
+// Sample (i, j) of a regular grid lies at (i + 1/2, j + 1/2) / N. The jittered grid tiles the rotated-grid pattern of
+// 2 x 2 points: its offset along x depends on the row's parity alone, along y on the column's: (3/4 or 1/4, 1/4 or
+// 3/4). So rectangles stay products of ranges.
 
 #if PN_SAMPLES == 17
 #define PN_GRID 16
@@ -31,8 +33,8 @@ uint pn_sample_range(float low, float high, float offset) {
   return pn_bit_range(ends.x, max(ends.x, ends.y));
 }
 
-// Rows (a bit for each) and, along a row, columns, to the words of the field. Columns come twice: for even and odd rows; rows too: for even and odd columns.
-// Regular grids pass the same twice.
+// Rows (a bit for each) and, along a row, columns, to the words of the field. Columns come twice: for even and odd
+// rows; rows too: for even and odd columns. Regular grids pass the same twice.
 uvec4 pn_spread_rows(uint rows, int word) {
 #if PN_GRID == 8
   // Two words of four rows; each row's bit becomes a byte.
@@ -74,8 +76,8 @@ pn_Field pn_rectangle(vec2 low, vec2 high) {
   return f;
 }
 
-// Ends, along x, of a convex polygon's slice at y, gathered edge by edge; edges are always taken upwards, so that two polygons that share one
-// find the same crossing and neither gap nor overlap is left between them.
+// Ends, along x, of a convex polygon's slice at y, gathered edge by edge; edges are always taken upwards, so that two
+// polygons that share one find the same crossing and neither gap nor overlap is left between them.
 void pn_slice(inout vec2 ends, vec2 a, vec2 b, float y) {
   if (b.y < a.y) {
     vec2 swap = a;

@@ -1,5 +1,5 @@
-// Percentage-closer filtering (Reeves, Salesin, Cook 1987): the blocked share of a fixed neighbourhood in the map. It smooths a hard shadow's edge by so many
-// texels; the light's size plays no part.
+// Percentage-closer filtering (Reeves, Salesin, Cook 1987): the blocked share of a fixed neighbourhood in the map. It
+// smooths a hard shadow's edge by so many texels; the light's size plays no part.
 #include "search/lookup.glsl"
 
 // A box of n x n texels centred on the position: texels at its border count by the part that lies inside.

@@ -1,13 +1,15 @@
-// Percentage-closer soft shadows (Fernando 2005) with the light's real size: blockers are searched where the light can be blocked at all,
-// and filtered over what the light covers in the map at the blockers' average w. Regular sampling: no noise.
+// Percentage-closer soft shadows (Fernando 2005) with the light's real size: blockers are searched where the light
+// can be blocked at all, and filtered over what the light covers in the map at the blockers' average w. Regular
+// sampling: no noise.
 #include "search/lookup.glsl"
 #include "search/window.glsl"
 
 // Sample i of n x n on [-1, 1]^2, at the middle of its cell.
 vec2 pn_cell(int i, int n) { return (2.0 * vec2(i % n, i / n) + 1.0) / float(n) - 1.0; }
 
-// Blockers among n x n samples of the window that belongs to casters at w: adds their w, and their weights. What a sample hides of the light
-// is its share of the map over (w - w_R)^2; that is its weight. inner: the middle quarter is left to a finer step.
+// Blockers among n x n samples of the window that belongs to casters at w: adds their w, and their weights. What a
+// sample hides of the light is its share of the map over (w - w_R)^2; that is its weight. inner: the middle quarter
+// is left to a finer step.
 vec2 pn_search_step(int light, highp sampler2DArray maps, pn_Receiver r, int n, float w, bool inner) {
   vec2 window = pn_search_window(pn_extent(light), w, r.m.z);
   float cell = window.x * window.y;
@@ -27,8 +29,9 @@ vec2 pn_search_step(int light, highp sampler2DArray maps, pn_Receiver r, int n, 
   return sum;
 }
 
-// Average w of the blockers; PN_NOTHING without any. Casters far from the light lie in a small part of the window only, which n x n samples may miss:
-// the middle is searched again, four times finer, until samples lie a texel apart.
+// Average w of the blockers; PN_NOTHING without any. Casters far from the light lie in a small part of the window
+// only, which n x n samples may miss: the middle is searched again, four times finer, until samples lie a texel
+// apart.
 float pn_blockers(int light, highp sampler2DArray maps, pn_Receiver r, int n, float w_max) {
   vec2 texels = 2.0 * pn_search_window(pn_extent(light), w_max, r.m.z) * pn_lights[light].map_bounds[0].zw / float(n);
   float spacing = max(texels.x, texels.y);
