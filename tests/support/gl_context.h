@@ -22,6 +22,13 @@ void gl_assert_clean(void);
 int gl_run(const char *name, const struct CMUnitTest *tests, size_t count);
 #define GL_RUN(name, tests) gl_run(name, tests, sizeof(tests) / sizeof *(tests))
 
+/* How often a random test goes round: a quarter of count in the sanitizer build, where everything takes its time. */
+#ifdef __SANITIZE_ADDRESS__
+#define TEST_ROUNDS(count) ((count) / 4)
+#else
+#define TEST_ROUNDS(count) (count)
+#endif
+
 /* A program from the text of its two stages, #version 330 core put before each. */
 GLuint gl_program(const char *vertex, const char *fragment);
 /* Level 0 of a texture, or of one layer of an array: channels floats a texel, freed by the caller. */

@@ -118,7 +118,7 @@ static configuration pick(const char *technique, uint64_t *seed) {
 /* Rounds of every technique; more than usual for a longer look: PENUMBRA_TEST_ROUNDS. */
 static int round_count(void) {
   const char *given = getenv("PENUMBRA_TEST_ROUNDS");
-  return given ? atoi(given) : 40;
+  return given ? atoi(given) : TEST_ROUNDS(40);
 }
 
 static int failures_of(const char *spec) {
