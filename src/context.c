@@ -7,7 +7,8 @@
 
 pn_result pn_context_create(const pn_context_desc *desc, pn_context **out) {
   if (!out) {
-    if (desc && desc->log) desc->log(desc->user, PN_LOG_ERROR, PN_MESSAGE_NULL_ARGUMENT, "pn_context_create: out is NULL");
+    if (desc && desc->log)
+      desc->log(desc->user, PN_LOG_ERROR, PN_MESSAGE_NULL_ARGUMENT, "pn_context_create: out is NULL");
     return PN_ERROR_ARGUMENT;
   }
   *out = NULL;
@@ -29,14 +30,7 @@ pn_result pn_context_create(const pn_context_desc *desc, pn_context **out) {
 }
 
 static void free_objects(pn_context *context, bool abandon) {
-  while (context->objects) {
-    pn_object *object = context->objects;
-    switch (object->kind) {
-      case PN_OBJECT_CASTERS: pn_casters_free((pn_casters *)object, abandon); break;
-      case PN_OBJECT_RECEIVER: pn_receiver_free((pn_receiver *)object, abandon); break;
-      case PN_OBJECT_LIGHT: pn_light_free((pn_light *)object, abandon); break;
-    }
-  }
+  while (context->objects) context->objects->free(context->objects, abandon);
 }
 
 static void free_forward_texts(pn_context *context) {
@@ -67,10 +61,10 @@ void pn_context_abandon(pn_context **context) { close_context(context, true); }
 
 /* ---- objects ----------------------------------------------------------------------------------------------------- */
 
-void *pn_object_create(pn_context *context, pn_object_kind kind, size_t bytes) {
+void *pn_object_create(pn_context *context, void (*release)(pn_object *, bool), size_t bytes) {
   pn_object *object = pn_allocate_zero(&context->gpu, bytes);
   if (!object) return NULL;
-  object->kind = kind;
+  object->free = release;
   object->context = context;
   object->next = context->objects;
   if (object->next) object->next->previous = object;
@@ -80,10 +74,8 @@ void *pn_object_create(pn_context *context, pn_object_kind kind, size_t bytes) {
 
 void pn_object_unlink(pn_object *object) {
   if (object->next) object->next->previous = object->previous;
-  if (object->previous)
-    object->previous->next = object->next;
-  else
-    object->context->objects = object->next;
+  if (object->previous) object->previous->next = object->next;
+  else object->context->objects = object->next;
 }
 
 /* ---- the host's GL state ----------------------------------------------------------------------------------------- */
@@ -105,10 +97,8 @@ static pn_result scope(pn_context *context, bool begin) {
     return pn_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_STATE_SCOPE, "%s",
                    begin ? "pn_state_begin was called twice" : "pn_state_end without pn_state_begin");
   context->scope = begin;
-  if (begin)
-    pn_state_save(&context->gpu, &context->saved);
-  else
-    pn_state_restore(&context->gpu, &context->saved);
+  if (begin) pn_state_save(&context->gpu, &context->saved);
+  else pn_state_restore(&context->gpu, &context->saved);
   return PN_OK;
 }
 
@@ -154,7 +144,9 @@ pn_result pn_context_info(const pn_context *context, pn_info *out) {
 }
 
 int pn_feature(const pn_context *context, int index, const char **name, int *in_use, const char **help) {
-  static const struct { const char *name, *help; } features[] = {
+  static const struct {
+    const char *name, *help;
+  } features[] = {
       {"timestamps", "stage times from the GPU's own clock; without: glFinish and the system's clock"},
       {"clip_control", "saves and sets glClipControl; without: nothing to save"},
       {"robustness", "a lost context is noticed by its reset status; without: by failing calls"},

@@ -6,16 +6,17 @@
 #include "gl/state.h"
 #include "gl/target.h"
 
-/* Every object is in its context's list, so that the context can free them all. */
-typedef enum { PN_OBJECT_CASTERS, PN_OBJECT_RECEIVER, PN_OBJECT_LIGHT } pn_object_kind;
-
+/* Every object is in its context's list, and knows how it is freed, so that the context can free them all. */
 typedef struct pn_object {
-  pn_object_kind kind;
   pn_context *context;
+  void (*free)(struct pn_object *object, bool abandon); /* abandon: without GL */
   struct pn_object *previous, *next;
 } pn_object;
 
-typedef struct pn_forward_text { char *key, *text; struct pn_forward_text *next; } pn_forward_text;
+typedef struct pn_forward_text {
+  char *key, *text;
+  struct pn_forward_text *next;
+} pn_forward_text;
 
 struct pn_context {
   pn_gpu gpu;
@@ -32,12 +33,8 @@ struct pn_context {
 void pn_enter(pn_context *context);
 pn_result pn_leave(pn_context *context, pn_result result);
 
-void *pn_object_create(pn_context *context, pn_object_kind kind, size_t bytes); /* zeroed; NULL after a message */
+/* Zeroed; NULL after a message. */
+void *pn_object_create(pn_context *context, void (*release)(pn_object *, bool), size_t bytes);
 void pn_object_unlink(pn_object *object);
-
-/* Frees the object; abandon: without GL. */
-void pn_casters_free(pn_casters *casters, bool abandon);
-void pn_receiver_free(pn_receiver *receiver, bool abandon);
-void pn_light_free(pn_light *light, bool abandon);
 
 #endif

@@ -83,7 +83,8 @@ static pn_result check_lights(pn_light *const *lights, int count, const pn_slots
                    PN_FORWARD_LIGHTS_MAX, units, bindings);
   for (int i = 0; i < count; i++) {
     if (!lights[i] || lights[i]->technique != lights[0]->technique || !lights[i]->technique->shader)
-      return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_FORWARD, "the lights must share a technique that has a forward form");
+      return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_FORWARD,
+                     "the lights must share a technique that has a forward form");
     if (!lights[i]->maps.ready)
       return pn_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "pn_maps_update comes first");
   }

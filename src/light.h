@@ -21,7 +21,11 @@ struct pn_light {
   pn_clock clock;
 };
 
+static inline pn_gpu *pn_light_gpu(const pn_light *light) { return &light->object.context->gpu; }
+
 /* The light's block with the technique's parameters in it. */
 void pn_light_fill_block(const pn_light *light, pn_light_block *block);
+/* The same, uploaded and bound for the library's own passes. */
+pn_result pn_light_bind_block(pn_light *light);
 
 #endif

@@ -475,8 +475,7 @@ typedef struct {
  * that changes GL state on purpose. */
 PN_API pn_result pn_bind(pn_light *const *lights, int count, pn_gl program, const pn_slots *slots);
 
-/* ---- time
- * ------------------------------------------------------------------------------------------------------------------ */
+/* ---- time -------------------------------------------------------------------------------------------------------- */
 
 typedef struct {
   const char *stage; /* for example "depth_map"; static */

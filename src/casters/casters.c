@@ -10,14 +10,8 @@ static pn_gpu *gpu_of(const pn_casters *casters) { return &casters->object.conte
 
 /* ---- the object -------------------------------------------------------------------------------------------------- */
 
-pn_result pn_casters_create(pn_context *context, pn_casters **out) {
-  if (!context) return PN_ERROR_ARGUMENT;
-  if (!out) return pn_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_casters_create: out is NULL");
-  *out = pn_object_create(context, PN_OBJECT_CASTERS, sizeof **out);
-  return *out ? PN_OK : PN_ERROR_OUT_OF_MEMORY;
-}
-
-void pn_casters_free(pn_casters *casters, bool abandon) {
+static void free_casters(pn_object *object, bool abandon) {
+  pn_casters *casters = (pn_casters *)object;
   pn_gpu *gpu = gpu_of(casters);
   for (int i = 0; i < casters->mesh_count; i++) pn_mesh_drop(gpu, &casters->meshes[i], abandon);
   pn_free(gpu, casters->meshes);
@@ -26,11 +20,19 @@ void pn_casters_free(pn_casters *casters, bool abandon) {
   pn_free(gpu, casters);
 }
 
+pn_result pn_casters_create(pn_context *context, pn_casters **out) {
+  if (!context) return PN_ERROR_ARGUMENT;
+  if (!out)
+    return pn_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_casters_create: out is NULL");
+  *out = pn_object_create(context, free_casters, sizeof **out);
+  return *out ? PN_OK : PN_ERROR_OUT_OF_MEMORY;
+}
+
 void pn_casters_destroy(pn_casters **casters) {
   if (!casters || !*casters) return;
   pn_context *context = (*casters)->object.context;
   pn_enter(context);
-  pn_casters_free(*casters, false);
+  free_casters(&(*casters)->object, false);
   pn_leave(context, PN_OK);
   *casters = NULL;
 }
@@ -51,8 +53,7 @@ static bool grow(pn_gpu *gpu, void **array, int *capacity, size_t element) {
 static pn_mesh_data *free_mesh(pn_casters *c) {
   for (int i = 0; i < c->mesh_count; i++)
     if (!c->meshes[i].id) return &c->meshes[i];
-  if (c->mesh_count == c->mesh_capacity &&
-      !grow(gpu_of(c), (void **)&c->meshes, &c->mesh_capacity, sizeof *c->meshes))
+  if (c->mesh_count == c->mesh_capacity && !grow(gpu_of(c), (void **)&c->meshes, &c->mesh_capacity, sizeof *c->meshes))
     return NULL;
   return &c->meshes[c->mesh_count++];
 }
@@ -62,10 +63,8 @@ static pn_instance_data *find_instance(const pn_casters *c, uint32_t id) {
   int low = 0, high = c->instance_count;
   while (low < high) {
     int middle = (low + high) / 2;
-    if (c->instances[middle].id < id)
-      low = middle + 1;
-    else
-      high = middle;
+    if (c->instances[middle].id < id) low = middle + 1;
+    else high = middle;
   }
   return id && low < c->instance_count && c->instances[low].id == id ? &c->instances[low] : NULL;
 }
@@ -81,7 +80,8 @@ pn_mesh_data *pn_find_mesh(const pn_casters *c, uint32_t id) {
 pn_result pn_mesh_add(pn_casters *casters, const pn_mesh_desc *desc, pn_mesh *out) {
   if (!casters) return PN_ERROR_ARGUMENT;
   pn_gpu *gpu = gpu_of(casters);
-  if (!desc || !out) return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_mesh_add: desc or out is NULL");
+  if (!desc || !out)
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_mesh_add: desc or out is NULL");
   out->id = 0;
   pn_enter(casters->object.context); /* the check looks into buffers */
   pn_result result = pn_mesh_check(gpu, desc);
@@ -137,12 +137,14 @@ pn_result pn_mesh_remove(pn_casters *casters, pn_mesh mesh) {
 static pn_result check_transform(pn_gpu *gpu, const float m[16]) {
   if (!m) return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "the transform is NULL");
   if (pn_floats_finite(m, 16) && m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1) return PN_OK;
-  return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_INSTANCE_TRANSFORM, "a transform must be finite, its last row 0 0 0 1");
+  return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_INSTANCE_TRANSFORM,
+                 "a transform must be finite, its last row 0 0 0 1");
 }
 
 static pn_result check_group(pn_gpu *gpu, int group) {
   if (group >= 0 && group < PN_GROUP_COUNT) return PN_OK;
-  return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_CASTER_GROUP, "group %d is not one of 0..%d", group, PN_GROUP_COUNT - 1);
+  return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_CASTER_GROUP, "group %d is not one of 0..%d", group,
+                 PN_GROUP_COUNT - 1);
 }
 
 pn_result pn_instance_add(pn_casters *casters, pn_mesh mesh, const float transform[16], int group, pn_instance *out) {
@@ -201,7 +203,8 @@ pn_result pn_casters_draw(pn_casters *casters, int group, pn_draw_fn draw, void 
   if (draw && !bounds)
     return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_casters_draw: bounds is NULL");
   if (draw && (!pn_box_sound(bounds, bounds + 3)))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_CASTER_BOUNDS, "a draw callback needs bounds: finite, not inverted");
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_CASTER_BOUNDS,
+                   "a draw callback needs bounds: finite, not inverted");
   pn_callback *callback = &casters->callbacks[group];
   callback->draw = draw;
   callback->user = user;
@@ -215,7 +218,8 @@ pn_result pn_casters_draw(pn_casters *casters, int group, pn_draw_fn draw, void 
 static void visit_box(const pn_box *box, const pn_matrix *transform, pn_box_visitor visit, void *user) {
   double corners[8][3];
   for (int i = 0; i < 8; i++) {
-    double p[3] = {i & 1 ? box->max[0] : box->min[0], i & 2 ? box->max[1] : box->min[1], i & 4 ? box->max[2] : box->min[2]};
+    double p[3] = {i & 1 ? box->max[0] : box->min[0], i & 2 ? box->max[1] : box->min[1],
+                   i & 4 ? box->max[2] : box->min[2]};
     pn_matrix_point(transform, p, corners[i]);
   }
   visit(user, (const double(*)[3])corners);

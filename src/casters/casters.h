@@ -5,20 +5,22 @@
 #include "context.h"
 #include "space/matrix.h"
 
-typedef struct { float min[3], max[3]; } pn_box;
+typedef struct {
+  float min[3], max[3];
+} pn_box;
 
 /* Boxes over runs of triangles: they bound a mesh in any projection far more tightly than one box does. */
 enum { PN_BOXES_MAX = 256, PN_BOX_TRIANGLES = 64 };
 
 typedef struct {
-  uint32_t id; /* 0: a free slot */
+  uint32_t id;                           /* 0: a free slot */
   pn_span positions, indices, texcoords; /* as described; data pointers are not kept */
   int index_bytes;
   uint32_t *kept_indices; /* positions and indices in memory: the mesh's triangles as described, for deformation */
   size_t kept_count;
   pn_gl vertex_array, buffers[3]; /* positions, indices, texcoords; 0 where the host owns it */
-  size_t bytes[3];        /* in own buffers */
-  size_t draw_count;      /* vertices or indices drawn */
+  size_t bytes[3];                /* in own buffers */
+  size_t draw_count;              /* vertices or indices drawn */
   pn_gl alpha_texture;
   int alpha_channel;
   float alpha_cutoff;

@@ -24,7 +24,8 @@ static bool outside(const pn_mesh_data *mesh, const pn_matrix *clip_from_object)
     int out[4] = {0};
     for (int i = 0; i < 8; i++) {
       double p[4] = {i & 1 ? box->max[0] : box->min[0], i & 2 ? box->max[1] : box->min[1],
-                     i & 4 ? box->max[2] : box->min[2], 1}, c[4];
+                     i & 4 ? box->max[2] : box->min[2], 1},
+             c[4];
       pn_matrix_apply(clip_from_object, p, c);
       out[0] += c[0] < -c[3];
       out[1] += c[0] > c[3];
@@ -69,7 +70,9 @@ static pn_result draw_mesh(pn_gpu *gpu, const pn_mesh_data *mesh, const pn_matri
 /* Mirroring turns winding round. */
 static bool mirrors(const pn_matrix *a) {
   const double *m = a->m;
-  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[4] * (m[1] * m[10] - m[2] * m[9]) + m[8] * (m[1] * m[6] - m[2] * m[5]) < 0;
+  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[4] * (m[1] * m[10] - m[2] * m[9]) +
+             m[8] * (m[1] * m[6] - m[2] * m[5]) <
+         0;
 }
 
 static pn_result draw_meshes(pn_casters *casters, const pn_caster_draw *draw) {
@@ -91,7 +94,10 @@ static pn_result draw_meshes(pn_casters *casters, const pn_caster_draw *draw) {
 /* Sides and far plane of the map's frustum, pointing inwards: rows of the clip matrix. */
 enum { PLANES = 5 };
 static void frustum_planes(const pn_matrix *clip, float planes[PLANES][4]) {
-  static const struct { int row; double sign; } sides[PLANES] = {{0, 1}, {0, -1}, {1, 1}, {1, -1}, {2, -1}};
+  static const struct {
+    int row;
+    double sign;
+  } sides[PLANES] = {{0, 1}, {0, -1}, {1, 1}, {1, -1}, {2, -1}};
   for (int i = 0; i < PLANES; i++)
     for (int c = 0; c < 4; c++)
       planes[i][c] = (float)(clip->m[4 * c + 3] + sides[i].sign * clip->m[4 * c + sides[i].row]);
@@ -102,8 +108,8 @@ static void call_host(pn_casters *casters, const pn_caster_draw *draw, int group
   float matrix[16], planes[PLANES][4];
   pn_matrix_to_floats(&draw->clip_from_scene, matrix);
   frustum_planes(&draw->clip_from_scene, planes);
-  pn_caster_pass pass = {matrix, planes[0], PLANES, draw->faces, draw->peel, PN_UNIT_PEEL, draw->layer, draw->width,
-                         draw->height};
+  pn_caster_pass pass = {matrix,       planes[0],   PLANES,      draw->faces, draw->peel,
+                         PN_UNIT_PEEL, draw->layer, draw->width, draw->height};
   if (draw->peel) pn_bind_texture(gpu, PN_UNIT_PEEL, GL_TEXTURE_2D, draw->peel, false);
   GL(gpu, FrontFace)(GL_CCW);
   casters->callbacks[group].draw(casters->callbacks[group].user, &pass);

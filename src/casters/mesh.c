@@ -38,7 +38,8 @@ static pn_result check_indices(pn_gpu *gpu, const pn_mesh_desc *d) {
   if (d->index_bytes && d->indices.buffer && d->indices.stride && d->indices.stride != (size_t)d->index_bytes)
     return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "indices in a GL buffer must be tightly packed");
   if (drawn % 3)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "%zu is not a number of triangles times three", drawn);
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "%zu is not a number of triangles times three",
+                   drawn);
   return PN_OK;
 }
 
@@ -47,8 +48,8 @@ static pn_result check_alpha(pn_gpu *gpu, const pn_mesh_desc *d) {
   if (!d->alpha_texture || !span_sound(gpu, &d->texcoords, 8) || d->texcoords.count < d->positions.count)
     return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_TEXCOORDS,
                    "an alpha texture and two floats for each position come together");
-  if (!GL(gpu, IsTexture)(d->alpha_texture) || d->alpha_channel < 0 || d->alpha_channel > 3 || !(d->alpha_cutoff >= 0) ||
-      !(d->alpha_cutoff <= 1))
+  if (!GL(gpu, IsTexture)(d->alpha_texture) || d->alpha_channel < 0 || d->alpha_channel > 3 ||
+      !(d->alpha_cutoff >= 0) || !(d->alpha_cutoff <= 1))
     return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_ALPHA, "alpha: a texture, channel 0..3, cutoff in [0, 1]");
   return PN_OK;
 }
@@ -226,8 +227,8 @@ static pn_result upload_triangles(pn_gpu *gpu, pn_mesh_data *mesh, const pn_span
   mesh->draw_count = 3 * count;
   mesh->index_bytes = 4;
   if (count < total)
-    pn_note(gpu, PN_LOG_WARNING, PN_MESSAGE_MESH_DROPPED,
-            "%zu of %zu triangles dropped: without area, or not finite", total - count, total);
+    pn_note(gpu, PN_LOG_WARNING, PN_MESSAGE_MESH_DROPPED, "%zu of %zu triangles dropped: without area, or not finite",
+            total - count, total);
   return PN_OK;
 }
 
@@ -247,8 +248,7 @@ static pn_result bind_host_indices(pn_gpu *gpu, pn_mesh_data *mesh, const pn_mes
     uint32_t *wide = pn_reallocate(gpu, NULL, d->indices.count * sizeof *wide);
     if (!wide) return PN_ERROR_OUT_OF_MEMORY;
     pn_result result = copy_indices(gpu, d, wide);
-    if (result == PN_OK)
-      result = upload(gpu, mesh, 1, GL_ELEMENT_ARRAY_BUFFER, wide, d->indices.count * sizeof *wide);
+    if (result == PN_OK) result = upload(gpu, mesh, 1, GL_ELEMENT_ARRAY_BUFFER, wide, d->indices.count * sizeof *wide);
     pn_free(gpu, wide);
     mesh->index_bytes = 4;
     return result;
@@ -296,10 +296,8 @@ pn_result pn_mesh_deform(pn_gpu *gpu, pn_mesh_data *mesh, const pn_span *positio
   pn_result result = PN_OK;
   if (positions) {
     GL(gpu, BindVertexArray)(mesh->vertex_array);
-    if (mesh->kept_indices)
-      result = upload_triangles(gpu, mesh, positions);
-    else
-      box_vertices(mesh, positions);
+    if (mesh->kept_indices) result = upload_triangles(gpu, mesh, positions);
+    else box_vertices(mesh, positions);
     if (result == PN_OK) result = upload_span(gpu, mesh, 0, positions, 12);
     GL(gpu, BindVertexArray)(0);
   }

@@ -49,10 +49,8 @@ void pn_clock_end(pn_gpu *gpu, pn_clock *clock) {
   if (!clock->running) return;
   clock->running = false;
   pn_clock_frame *frame = &clock->frames[clock->current];
-  if (gpu->can.software)
-    publish(clock, frame, frame->now);
-  else
-    frame->pending = true;
+  if (gpu->can.software) publish(clock, frame, frame->now);
+  else frame->pending = true;
 }
 
 static bool read_frame(pn_gpu *gpu, pn_clock *clock, pn_clock_frame *frame) {

@@ -24,7 +24,7 @@ typedef struct {
   int count;
 } pn_clock;
 
-void pn_clock_start(pn_gpu *gpu, pn_clock *clock);                   /* a frame begins; nothing while timing is off */
+void pn_clock_start(pn_gpu *gpu, pn_clock *clock); /* a frame begins; nothing while timing is off */
 /* what was drawn since the last mark was this stage */
 void pn_clock_mark(pn_gpu *gpu, pn_clock *clock, const char *stage);
 void pn_clock_end(pn_gpu *gpu, pn_clock *clock);

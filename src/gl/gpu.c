@@ -13,7 +13,8 @@
 
 void *pn_reallocate(pn_gpu *gpu, void *old, size_t bytes) {
   void *memory = gpu->desc.allocate ? gpu->desc.allocate(gpu->desc.user, old, bytes) : realloc(old, bytes);
-  if (!memory && bytes) pn_fail(gpu, PN_ERROR_OUT_OF_MEMORY, PN_MESSAGE_OUT_OF_MEMORY, "no memory for %zu bytes", bytes);
+  if (!memory && bytes)
+    pn_fail(gpu, PN_ERROR_OUT_OF_MEMORY, PN_MESSAGE_OUT_OF_MEMORY, "no memory for %zu bytes", bytes);
   return memory;
 }
 
@@ -25,10 +26,8 @@ void *pn_allocate_zero(pn_gpu *gpu, size_t bytes) {
 
 void pn_free(pn_gpu *gpu, void *memory) {
   if (!memory) return;
-  if (gpu->desc.allocate)
-    gpu->desc.allocate(gpu->desc.user, memory, 0);
-  else
-    free(memory);
+  if (gpu->desc.allocate) gpu->desc.allocate(gpu->desc.user, memory, 0);
+  else free(memory);
 }
 
 static void send(pn_gpu *gpu, pn_log_level level, pn_message message, const char *format, va_list arguments) {
@@ -106,8 +105,8 @@ static void read_capabilities(pn_gpu *gpu) {
   can->clip_control = function && (can->version >= 45 || has_extension(gpu, "GL_ARB_clip_control"));
   function = !gpu->desc.get_proc_address || gpu->storage.GetGraphicsResetStatus;
   can->robustness = function && can->version >= 45;
-  function = !gpu->desc.get_proc_address || (gpu->storage.ViewportIndexedf && gpu->storage.DepthRangeIndexed &&
-                                             gpu->storage.ScissorIndexed);
+  function = !gpu->desc.get_proc_address ||
+             (gpu->storage.ViewportIndexedf && gpu->storage.DepthRangeIndexed && gpu->storage.ScissorIndexed);
   can->viewports = function && can->version >= 41;
   can->fixed_restart = can->version >= 43;
   GL(gpu, GetIntegerv)(GL_MAX_TEXTURE_SIZE, &can->texture_size_max);
@@ -160,9 +159,8 @@ static void make_shared_objects(pn_gpu *gpu) {
   GL(gpu, GenFramebuffers)(1, &gpu->read_framebuffer);
   GL(gpu, GenSamplers)(1, &gpu->sampler_nearest);
   static const GLenum parameters[][2] = {
-      {GL_TEXTURE_MIN_FILTER, GL_NEAREST}, {GL_TEXTURE_MAG_FILTER, GL_NEAREST},
-      {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE},              {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE},
-      {GL_TEXTURE_COMPARE_MODE, GL_NONE},
+      {GL_TEXTURE_MIN_FILTER, GL_NEAREST},   {GL_TEXTURE_MAG_FILTER, GL_NEAREST}, {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE},
+      {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE}, {GL_TEXTURE_COMPARE_MODE, GL_NONE},
   };
   for (size_t i = 0; i < sizeof parameters / sizeof *parameters; i++)
     GL(gpu, SamplerParameteri)(gpu->sampler_nearest, parameters[i][0], (GLint)parameters[i][1]);
@@ -212,4 +210,9 @@ void pn_gpu_close(pn_gpu *gpu, bool abandon) {
     GL(gpu, DeleteSamplers)(1, &gpu->sampler_nearest);
   }
   pn_free(gpu, gpu->shader_directory);
+}
+
+pn_result pn_gpu_check_lost(pn_gpu *gpu) {
+  if (!gpu->can.robustness || GL(gpu, GetGraphicsResetStatus)() == GL_NO_ERROR) return PN_OK;
+  return pn_fail(gpu, PN_ERROR_CONTEXT_LOST, PN_MESSAGE_GL_LOST, "the GL context was reset");
 }

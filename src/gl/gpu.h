@@ -8,25 +8,25 @@
 
 /* Texture units the library uses, from 0. State saving covers exactly these. */
 enum {
-  PN_UNIT_MAPS = 0,   /* the light's depth maps */
-  PN_UNIT_RANGE,      /* the light's range pyramid */
-  PN_UNIT_DEPTH,      /* the receiver's depth */
+  PN_UNIT_MAPS = 0, /* the light's depth maps */
+  PN_UNIT_RANGE,    /* the light's range pyramid */
+  PN_UNIT_DEPTH,    /* the receiver's depth */
   PN_UNIT_NORMAL,
   PN_UNIT_MASK,
-  PN_UNIT_WORK,       /* whatever a technique keeps between its passes */
+  PN_UNIT_WORK, /* whatever a technique keeps between its passes */
   PN_UNIT_PEEL,
   PN_UNIT_ALPHA,
   PN_UNIT_COUNT
 };
 
 typedef struct {
-  int version;         /* 33, 45, 46 */
+  int version; /* 33, 45, 46 */
   bool software;
-  bool compatibility;  /* a compatibility profile: some state exists only there */
-  bool viewports;      /* 4.1: one viewport, depth range and scissor test for each index */
-  bool clip_control;   /* 4.5 or ARB_clip_control */
-  bool robustness;     /* GetGraphicsResetStatus works */
-  bool fixed_restart;  /* GL_PRIMITIVE_RESTART_FIXED_INDEX, 4.3 */
+  bool compatibility; /* a compatibility profile: some state exists only there */
+  bool viewports;     /* 4.1: one viewport, depth range and scissor test for each index */
+  bool clip_control;  /* 4.5 or ARB_clip_control */
+  bool robustness;    /* GetGraphicsResetStatus works */
+  bool fixed_restart; /* GL_PRIMITIVE_RESTART_FIXED_INDEX, 4.3 */
   int texture_size_max, layers_max, draw_buffers, subpixel_bits, clip_distances, sample_mask_words;
 } pn_capabilities;
 
@@ -39,12 +39,12 @@ typedef struct pn_gpu {
   pn_context_desc desc; /* the host's callbacks */
   char *shader_directory;
 
-  size_t memory;        /* bytes in textures and buffers */
+  size_t memory; /* bytes in textures and buffers */
   bool timing;
-  bool debug;           /* searches tell what they did */
+  bool debug; /* searches tell what they did */
 
-  pn_gl vertex_array;   /* without attributes: full-screen triangles */
-  pn_gl framebuffer;    /* the one the passes draw to */
+  pn_gl vertex_array; /* without attributes: full-screen triangles */
+  pn_gl framebuffer;  /* the one the passes draw to */
   pn_gl read_framebuffer;
   pn_gl sampler_nearest; /* no filtering, clamped, no comparison */
   pn_program *programs;
@@ -54,6 +54,9 @@ typedef struct pn_gpu {
 pn_result pn_gpu_open(pn_gpu *gpu, const pn_context_desc *desc);
 /* abandon: free memory without a GL call. */
 void pn_gpu_close(pn_gpu *gpu, bool abandon);
+
+/* PN_ERROR_CONTEXT_LOST, with a message, when the GL context was reset, as far as the device tells. */
+pn_result pn_gpu_check_lost(pn_gpu *gpu);
 
 /* Memory from the host's allocator. */
 void *pn_reallocate(pn_gpu *gpu, void *old, size_t bytes); /* NULL when out of memory, after a message */

@@ -71,15 +71,14 @@ static pn_result add_file(assembly *a, const char *path, const char *from) {
   const char *text = source(a->gpu, path, &storage);
   pn_result result = PN_OK;
   if (!text)
-    result = pn_fail(a->gpu, PN_ERROR_SHADER, PN_MESSAGE_SHADER_MISSING, "shader %s, wanted by %s, does not exist", path, from);
+    result = pn_fail(a->gpu, PN_ERROR_SHADER, PN_MESSAGE_SHADER_MISSING, "shader %s, wanted by %s, does not exist",
+                     path, from);
   for (const char *line = text; result == PN_OK && line && *line;) {
     const char *end = strchr(line, '\n');
     size_t length = end ? (size_t)(end - line) + 1 : strlen(line);
     char included[96];
-    if (include_path(line, length, included))
-      result = add_file(a, included, path);
-    else
-      pn_text_add(&a->text, line, length);
+    if (include_path(line, length, included)) result = add_file(a, included, path);
+    else pn_text_add(&a->text, line, length);
     line += length;
   }
   pn_free(a->gpu, storage.bytes);
@@ -103,16 +102,15 @@ pn_result pn_shader_text(pn_gpu *gpu, const char *const *paths, const char *defi
   pn_result result = PN_OK;
   for (; *paths && result == PN_OK; paths++) result = add_file(&a, *paths, "the library");
   if (result == PN_OK && a.text.failed) result = PN_ERROR_OUT_OF_MEMORY;
-  if (result == PN_OK)
-    *out = a.text.bytes;
-  else
-    pn_free(gpu, a.text.bytes);
+  if (result == PN_OK) *out = a.text.bytes;
+  else pn_free(gpu, a.text.bytes);
   return result;
 }
 
 /* ---- compiling --------------------------------------------------------------------------------------------------- */
 
-static pn_result compile(pn_gpu *gpu, GLenum stage, const char *path, const char *more, const char *defines, pn_gl *out) {
+static pn_result compile(pn_gpu *gpu, GLenum stage, const char *path, const char *more, const char *defines,
+                         pn_gl *out) {
   char *text = NULL;
   const char *paths[] = {path, more, NULL};
   pn_result result = pn_shader_text(gpu, paths, defines, &text);
@@ -148,7 +146,8 @@ static pn_result link(pn_gpu *gpu, const pn_program_key *key, pn_gl vertex, pn_g
   char log[800] = "";
   GL(gpu, GetProgramInfoLog)(id, sizeof log, NULL, log);
   GL(gpu, DeleteProgram)(id);
-  return pn_fail(gpu, PN_ERROR_SHADER, PN_MESSAGE_SHADER_LINK, "program %s with %s: %s", key->vertex, key->fragment, log);
+  return pn_fail(gpu, PN_ERROR_SHADER, PN_MESSAGE_SHADER_LINK, "program %s with %s: %s", key->vertex, key->fragment,
+                 log);
 }
 
 static void find_uniforms(pn_gpu *gpu, pn_program *program) {
@@ -174,9 +173,13 @@ GLint pn_uniform(const pn_program *program, const char *name) {
 
 /* Samplers have fixed units all over the library, so they are set once. */
 static void set_samplers(pn_gpu *gpu, const pn_program *program, GLint binding) {
-  static const struct { const char *name; int unit; } samplers[] = {
-      {"pn_maps", PN_UNIT_MAPS}, {"pn_range", PN_UNIT_RANGE}, {"pn_depth", PN_UNIT_DEPTH}, {"pn_normal", PN_UNIT_NORMAL},
-      {"pn_mask", PN_UNIT_MASK}, {"pn_work", PN_UNIT_WORK},   {"pn_peel_map", PN_UNIT_PEEL}, {"pn_alpha", PN_UNIT_ALPHA},
+  static const struct {
+    const char *name;
+    int unit;
+  } samplers[] = {
+      {"pn_maps", PN_UNIT_MAPS},     {"pn_range", PN_UNIT_RANGE}, {"pn_depth", PN_UNIT_DEPTH},
+      {"pn_normal", PN_UNIT_NORMAL}, {"pn_mask", PN_UNIT_MASK},   {"pn_work", PN_UNIT_WORK},
+      {"pn_peel_map", PN_UNIT_PEEL}, {"pn_alpha", PN_UNIT_ALPHA},
   };
   GLint before = 0;
   GL(gpu, GetIntegerv)(GL_CURRENT_PROGRAM, &before);

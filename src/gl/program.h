@@ -16,7 +16,10 @@ enum { PN_UNIFORMS_MAX = 24, PN_UNIFORM_NAME = 32 };
 struct pn_program {
   pn_gl id;
   int uniform_count;
-  struct { char name[PN_UNIFORM_NAME]; GLint location; } uniforms[PN_UNIFORMS_MAX];
+  struct {
+    char name[PN_UNIFORM_NAME];
+    GLint location;
+  } uniforms[PN_UNIFORMS_MAX];
   char *key;
   pn_program *next;
 };

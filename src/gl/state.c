@@ -3,10 +3,21 @@
 /* Capabilities without an index. GL_DITHER is the only one that is on by default here; multisampling is of no effect
  * in the single-sample targets the library draws to. */
 static const GLenum switches[] = {
-    GL_SCISSOR_TEST,          GL_STENCIL_TEST,    GL_DEPTH_TEST,        GL_CULL_FACE,
-    GL_POLYGON_OFFSET_FILL,   GL_COLOR_LOGIC_OP,  GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE,
-    GL_SAMPLE_COVERAGE,       GL_SAMPLE_MASK,     GL_PRIMITIVE_RESTART, GL_FRAMEBUFFER_SRGB,
-    GL_DITHER,                GL_DEPTH_CLAMP,     GL_SAMPLE_ALPHA_TO_ONE,
+    GL_SCISSOR_TEST,
+    GL_STENCIL_TEST,
+    GL_DEPTH_TEST,
+    GL_CULL_FACE,
+    GL_POLYGON_OFFSET_FILL,
+    GL_COLOR_LOGIC_OP,
+    GL_RASTERIZER_DISCARD,
+    GL_SAMPLE_ALPHA_TO_COVERAGE,
+    GL_SAMPLE_COVERAGE,
+    GL_SAMPLE_MASK,
+    GL_PRIMITIVE_RESTART,
+    GL_FRAMEBUFFER_SRGB,
+    GL_DITHER,
+    GL_DEPTH_CLAMP,
+    GL_SAMPLE_ALPHA_TO_ONE,
     GL_PRIMITIVE_RESTART_FIXED_INDEX, /* 4.3: last, so that older contexts leave it out */
 };
 enum { SWITCH_COUNT = sizeof switches / sizeof *switches };
@@ -25,36 +36,26 @@ static int draw_buffers(const pn_gpu *gpu) { return least(gpu->can.draw_buffers,
 static int clip_distances(const pn_gpu *gpu) { return least(gpu->can.clip_distances, PN_CLIP_DISTANCES_SAVED); }
 
 void pn_set_viewport(pn_gpu *gpu, int x, int y, int width, int height) {
-  if (gpu->can.viewports)
-    GL(gpu, ViewportIndexedf)(0, (GLfloat)x, (GLfloat)y, (GLfloat)width, (GLfloat)height);
-  else
-    GL(gpu, Viewport)(x, y, width, height);
+  if (gpu->can.viewports) GL(gpu, ViewportIndexedf)(0, (GLfloat)x, (GLfloat)y, (GLfloat)width, (GLfloat)height);
+  else GL(gpu, Viewport)(x, y, width, height);
 }
 
 void pn_set_depth_range(pn_gpu *gpu, double near, double far) {
-  if (gpu->can.viewports)
-    GL(gpu, DepthRangeIndexed)(0, near, far);
-  else
-    GL(gpu, DepthRange)(near, far);
+  if (gpu->can.viewports) GL(gpu, DepthRangeIndexed)(0, near, far);
+  else GL(gpu, DepthRange)(near, far);
 }
 
 void pn_set_scissor(pn_gpu *gpu, int x, int y, int width, int height) {
-  if (gpu->can.viewports)
-    GL(gpu, ScissorIndexed)(0, x, y, width, height);
-  else
-    GL(gpu, Scissor)(x, y, width, height);
+  if (gpu->can.viewports) GL(gpu, ScissorIndexed)(0, x, y, width, height);
+  else GL(gpu, Scissor)(x, y, width, height);
 }
 
 void pn_set_switch(pn_gpu *gpu, GLenum name, bool on) {
   bool indexed = gpu->can.viewports && name == GL_SCISSOR_TEST;
-  if (indexed && on)
-    GL(gpu, Enablei)(name, 0);
-  else if (indexed)
-    GL(gpu, Disablei)(name, 0);
-  else if (on)
-    GL(gpu, Enable)(name);
-  else
-    GL(gpu, Disable)(name);
+  if (indexed && on) GL(gpu, Enablei)(name, 0);
+  else if (indexed) GL(gpu, Disablei)(name, 0);
+  else if (on) GL(gpu, Enable)(name);
+  else GL(gpu, Disable)(name);
 }
 
 static void save_bindings(pn_gpu *gpu, pn_gl_state *state) {
@@ -124,12 +125,10 @@ static void restore_bindings(pn_gpu *gpu, const pn_gl_state *state) {
   GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, (GLuint)state->array_buffer);
   GL(gpu, BindFramebuffer)(GL_DRAW_FRAMEBUFFER, (GLuint)state->draw_framebuffer);
   GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, (GLuint)state->read_framebuffer);
-  if (state->block_size > 0)
-    GL(gpu, BindBufferRange)
+  if (state->block_size > 0) GL(gpu, BindBufferRange)
   (GL_UNIFORM_BUFFER, PN_BLOCK_BINDING, (GLuint)state->block_buffer, (GLintptr)state->block_start,
    (GLsizeiptr)state->block_size);
-  else
-    GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PN_BLOCK_BINDING, (GLuint)state->block_buffer);
+  else GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PN_BLOCK_BINDING, (GLuint)state->block_buffer);
   GL(gpu, BindBuffer)(GL_UNIFORM_BUFFER, (GLuint)state->uniform_buffer); /* after the indexed one, which sets it too */
   GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, (GLuint)state->pixel_pack);
   GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, (GLuint)state->pixel_unpack);
@@ -172,10 +171,8 @@ static void restore_raster(pn_gpu *gpu, const pn_gl_state *state) {
   for (int i = 0; i < draw_buffers(gpu); i++) {
     const GLboolean *mask = state->color_mask[i];
     GL(gpu, ColorMaski)((GLuint)i, mask[0], mask[1], mask[2], mask[3]);
-    if (state->blend[i])
-      GL(gpu, Enablei)(GL_BLEND, (GLuint)i);
-    else
-      GL(gpu, Disablei)(GL_BLEND, (GLuint)i);
+    if (state->blend[i]) GL(gpu, Enablei)(GL_BLEND, (GLuint)i);
+    else GL(gpu, Disablei)(GL_BLEND, (GLuint)i);
   }
   for (int i = 0; i < clip_distances(gpu); i++) pn_set_switch(gpu, GL_CLIP_DISTANCE0 + (GLenum)i, state->clip[i]);
   for (int i = 0; i < switch_count(gpu); i++) pn_set_switch(gpu, switches[i], state->enabled[i]);

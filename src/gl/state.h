@@ -7,7 +7,8 @@
 enum { PN_DRAW_BUFFERS_SAVED = 8, PN_CLIP_DISTANCES_SAVED = 8, PN_SWITCHES = 16 };
 
 typedef struct {
-  GLint program, vertex_array, array_buffer, draw_framebuffer, read_framebuffer, uniform_buffer, pixel_pack, pixel_unpack;
+  GLint program, vertex_array, array_buffer, draw_framebuffer, read_framebuffer, uniform_buffer, pixel_pack,
+      pixel_unpack;
   GLint block_buffer; /* the indexed uniform buffer binding the library uses */
   GLint64 block_start, block_size;
   GLint active_texture, texture_2d[PN_UNIT_COUNT], texture_array[PN_UNIT_COUNT], texture_multisample[PN_UNIT_COUNT],

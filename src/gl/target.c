@@ -21,15 +21,20 @@ pn_result pn_memory_check(pn_gpu *gpu, size_t bytes) {
   bool exhausted = false;
   for (GLenum error; (error = GL(gpu, GetError)()) != GL_NO_ERROR;) {
     if (error == GL_OUT_OF_MEMORY) exhausted = true;
-    if (error == GL_CONTEXT_LOST) return pn_fail(gpu, PN_ERROR_CONTEXT_LOST, PN_MESSAGE_GL_LOST, "the GL context is lost");
+    if (error == GL_CONTEXT_LOST)
+      return pn_fail(gpu, PN_ERROR_CONTEXT_LOST, PN_MESSAGE_GL_LOST, "the GL context is lost");
   }
   if (!exhausted) return PN_OK;
-  return pn_fail(gpu, PN_ERROR_OUT_OF_MEMORY, PN_MESSAGE_GPU_MEMORY, "the driver has no %zu bytes of GPU memory", bytes);
+  return pn_fail(gpu, PN_ERROR_OUT_OF_MEMORY, PN_MESSAGE_GPU_MEMORY, "the driver has no %zu bytes of GPU memory",
+                 bytes);
 }
 
 /* ---- textures ---------------------------------------------------------------------------------------------------- */
 
-typedef struct { GLenum format, layout, type; int bytes, channels; } format_info;
+typedef struct {
+  GLenum format, layout, type;
+  int bytes, channels;
+} format_info;
 
 static const format_info formats[] = {
     {GL_R8, GL_RED, GL_UNSIGNED_BYTE, 1, 1},
@@ -72,12 +77,9 @@ static void define_texture(pn_gpu *gpu, const pn_texture *t, const format_info *
   (t->target, GL_TEXTURE_MIN_FILTER, t->levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);
   for (int level = 0; level < t->levels; level++) {
     int width = half(t->width, level), height = half(t->height, level);
-    if (t->layers)
-      GL(gpu, TexImage3D)
+    if (t->layers) GL(gpu, TexImage3D)
     (t->target, level, (GLint)t->format, width, height, t->layers, 0, info->layout, info->type, NULL);
-    else
-      GL(gpu, TexImage2D)(t->target, level, (GLint)t->format, width, height, 0, info->layout, info->type, NULL);
-  }
+    else GL(gpu, TexImage2D)(t->target, level, (GLint)t->format, width, height, 0, info->layout, info->type, NULL); }
   GL(gpu, TexParameteri)(t->target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   GL(gpu, TexParameteri)(t->target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   GL(gpu, TexParameteri)(t->target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -89,15 +91,20 @@ static bool same_shape(const pn_texture *a, const pn_texture *b) {
          a->layers == b->layers && a->levels == b->levels;
 }
 
-pn_result pn_texture_shape(pn_gpu *gpu, pn_texture *texture, GLenum format, int width, int height, int layers, int levels) {
-  pn_texture made = {.target = layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, .format = format,
-                     .width = width, .height = height, .layers = layers, .levels = levels};
+pn_result pn_texture_shape(pn_gpu *gpu, pn_texture *texture, GLenum format, int width, int height, int layers,
+                           int levels) {
+  pn_texture made = {.target = layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D,
+                     .format = format,
+                     .width = width,
+                     .height = height,
+                     .layers = layers,
+                     .levels = levels};
   if (same_shape(texture, &made)) return PN_OK;
   const format_info *info = find_format(format);
   if (!info || width < 1 || height < 1 || width > gpu->can.texture_size_max || height > gpu->can.texture_size_max ||
       layers > gpu->can.layers_max)
-    return pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_FRAMEBUFFER, "this device has no texture of %d x %d x %d", width,
-                   height, layers);
+    return pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_FRAMEBUFFER, "this device has no texture of %d x %d x %d",
+                   width, height, layers);
   made.bytes = texture_bytes(&made, info);
   pn_result result = pn_memory_take(gpu, made.bytes);
   if (result != PN_OK) return result;
@@ -136,8 +143,7 @@ void pn_bind_texture(pn_gpu *gpu, int unit, GLenum target, pn_gl texture, bool o
 static void attach(pn_gpu *gpu, GLenum point, const pn_attachment *a) {
   if (a->texture && a->target == GL_TEXTURE_2D_ARRAY)
     GL(gpu, FramebufferTextureLayer)(GL_DRAW_FRAMEBUFFER, point, a->texture, a->level, a->layer);
-  else
-    GL(gpu, FramebufferTexture2D)(GL_DRAW_FRAMEBUFFER, point, GL_TEXTURE_2D, a->texture, a->level);
+  else GL(gpu, FramebufferTexture2D)(GL_DRAW_FRAMEBUFFER, point, GL_TEXTURE_2D, a->texture, a->level);
 }
 
 static pn_result attach_all(pn_gpu *gpu, const pn_pass *pass) {
@@ -152,8 +158,9 @@ static pn_result attach_all(pn_gpu *gpu, const pn_pass *pass) {
   GL(gpu, DrawBuffers)(2, draw);
   GLenum status = GL(gpu, CheckFramebufferStatus)(GL_DRAW_FRAMEBUFFER);
   if (status == GL_FRAMEBUFFER_COMPLETE) return PN_OK;
-  return pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_FRAMEBUFFER, "this device cannot draw into a %d x %d image of texture %u, level %d, layer %d (0x%x)",
-                 pass->width, pass->height, pass->color[0].texture ? pass->color[0].texture : pass->depth.texture,
+  return pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_FRAMEBUFFER,
+                 "this device cannot draw into a %d x %d image of texture %u, level %d, layer %d (0x%x)", pass->width,
+                 pass->height, pass->color[0].texture ? pass->color[0].texture : pass->depth.texture,
                  pass->color[0].texture ? pass->color[0].level : pass->depth.level,
                  pass->color[0].texture ? pass->color[0].layer : pass->depth.layer, status);
 }

@@ -14,7 +14,8 @@ typedef struct {
 /* A texture of that shape, its contents undefined; sampling is nearest, clamped, without comparison. If texture
  * already has that shape nothing happens. The old one is freed only once the new one exists. layers 0: 2D; else a 2D
  * array. */
-pn_result pn_texture_shape(pn_gpu *gpu, pn_texture *texture, GLenum format, int width, int height, int layers, int levels);
+pn_result pn_texture_shape(pn_gpu *gpu, pn_texture *texture, GLenum format, int width, int height, int layers,
+                           int levels);
 void pn_texture_free(pn_gpu *gpu, pn_texture *texture, bool abandon);
 void pn_texture_image(const pn_texture *texture, pn_image *out);
 
@@ -36,8 +37,8 @@ typedef struct {
   pn_attachment color[2]; /* texture 0: none */
   pn_attachment depth;
   int width, height;
-  pn_depth_use depth_use; /* with depth: which surface stays; the image is cleared to 'nothing there' first */
-  pn_faces faces;         /* 0 = any */
+  pn_depth_use depth_use;  /* with depth: which surface stays; the image is cleared to 'nothing there' first */
+  pn_faces faces;          /* 0 = any */
   GLdouble depth_range[2]; /* both 0: 0 to 1 */
   bool depth_clamp;
 } pn_pass;
@@ -49,7 +50,10 @@ void pn_draw_screen(pn_gpu *gpu);
 pn_result pn_screen_begin(pn_gpu *gpu, const pn_pass *pass, const pn_program *program);
 
 /* A uniform buffer of the library's, updated whole. */
-typedef struct { pn_gl id; size_t bytes; } pn_uniform_buffer;
+typedef struct {
+  pn_gl id;
+  size_t bytes;
+} pn_uniform_buffer;
 pn_result pn_uniform_buffer_set(pn_gpu *gpu, pn_uniform_buffer *buffer, const void *data, size_t bytes);
 void pn_uniform_buffer_free(pn_gpu *gpu, pn_uniform_buffer *buffer, bool abandon);
 

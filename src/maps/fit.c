@@ -43,7 +43,10 @@ static void look_at_distance(void *user, const double corners[8][3]) {
 
 /* ---- one box ----------------------------------------------------------------------------------------------------- */
 
-typedef struct { double least[3], most[3]; bool any; } span3;
+typedef struct {
+  double least[3], most[3];
+  bool any;
+} span3;
 
 static void span_add(span3 *span, const fitting *f, const double p[3]) {
   double m[3];
@@ -151,7 +154,8 @@ static double snap_distance(double z, bool up) {
 static void snap_depth(const fitting *f, pn_fit_result *out) {
   double w_low = f->least[2], w_high = f->most[2];
   if (f->request->frame->sun) {
-    double extent = fmax(w_high - w_low, 1e-6 * (fabs(w_high) + fabs(w_low)) + 1e-30), step = snap_step(w_high - extent, w_high);
+    double extent = fmax(w_high - w_low, 1e-6 * (fabs(w_high) + fabs(w_low)) + 1e-30),
+           step = snap_step(w_high - extent, w_high);
     out->w_near = (ceil(w_high / step) + 1) * step;
     out->w_far = (floor(w_low / step) - 1) * step;
   } else {
@@ -245,40 +249,4 @@ void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_reques
   clamp_opening(&f, out); /* what snapping put beyond the limit is empty */
   snap_depth(&f, out);
   make_tiles(request, out);
-}
-
-/* ---- regions ----------------------------------------------------------------------------------------------------- */
-
-pn_region pn_region_empty(void) {
-  return (pn_region){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-}
-
-static void region_add(pn_region *region, const double m[3]) {
-  for (int i = 0; i < 3; i++) {
-    region->least[i] = fmin(region->least[i], m[i]);
-    region->most[i] = fmax(region->most[i], m[i]);
-  }
-}
-
-/* Corners stay homogeneous, so that those of an infinite frustum need no case of their own: h[3] is 0 there, or
- * rounding of either sign, and positive everywhere else before the camera. */
-void pn_region_add_frustum(pn_region *region, const pn_frame *frame, const pn_matrix *scene_from_clip, double depth_near) {
-  pn_matrix light_from_scene = pn_light_from_scene(frame);
-  pn_matrix light_from_clip = pn_matrix_multiply(&light_from_scene, scene_from_clip);
-  bool behind = false;
-  for (int i = 0; i < 8; i++) {
-    double clip[4] = {i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : depth_near, 1}, h[4];
-    pn_matrix_apply(&light_from_clip, clip, h);
-    double divisor = frame->sun ? h[3] : h[2];
-    if (!(divisor > 1e-9 * (fabs(h[0]) + fabs(h[1]) + fabs(h[2])))) {
-      behind = true; /* behind the light, or at infinity under a sun: no bound from this corner */
-      continue;
-    }
-    double m[3] = {h[0] / divisor, h[1] / divisor, frame->sun ? -h[2] / divisor : h[3] / divisor};
-    region_add(region, m);
-  }
-  if (!behind) return;
-  double everywhere[2][3] = {{-1e30, -1e30, frame->sun ? -1e30 : 0}, {1e30, 1e30, 1e30}};
-  region_add(region, everywhere[0]);
-  region_add(region, everywhere[1]);
 }

@@ -4,16 +4,13 @@
 #define PN_MAPS_FIT_H
 
 #include "casters/casters.h"
-#include "space/space.h"
-
-/* Bounds in (s, t, w) of the receivers that count; anything goes where least > most. */
-typedef struct { double least[3], most[3]; } pn_region;
+#include "space/region.h"
 
 enum { PN_TILES_MAX = 9 };
 
 typedef struct {
-  bool empty;   /* nothing casts here */
-  bool clamped; /* opened past 170 degrees */
+  bool empty;       /* nothing casts here */
+  bool clamped;     /* opened past 170 degrees */
   double bounds[4]; /* s0, t0, s1, t1 */
   double w_near, w_far;
   int tiles;
@@ -22,7 +19,7 @@ typedef struct {
 
 typedef struct {
   const pn_frame *frame;
-  double shear[2];          /* the light's point the map is drawn from, for both kinds of light */
+  double shear[2]; /* the light's point the map is drawn from, for both kinds of light */
   double near_distance, range;
   int width, height;
   const float *given;       /* PN_FIT_GIVEN's box, or NULL */
@@ -30,10 +27,5 @@ typedef struct {
 } pn_fit_request;
 
 void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_request *request, pn_fit_result *out);
-
-/* An empty region, for adding to; and the region that a camera's frustum covers. scene_from_clip: inverse of
- * projection * view, with depth_near, depth_far in the projection's own convention. */
-pn_region pn_region_empty(void);
-void pn_region_add_frustum(pn_region *region, const pn_frame *frame, const pn_matrix *scene_from_clip, double depth_near);
 
 #endif

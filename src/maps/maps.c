@@ -13,8 +13,7 @@ pn_result pn_maps_shape(pn_gpu *gpu, pn_maps *maps, const pn_maps_want *want, in
   for (int i = 0; i < 2 && result == PN_OK; i++) {
     if (want->near_layers > 1)
       result = pn_texture_shape(gpu, &maps->peel[i], GL_DEPTH_COMPONENT32F, width, height, 0, 1);
-    else
-      pn_texture_free(gpu, &maps->peel[i], false);
+    else pn_texture_free(gpu, &maps->peel[i], false);
   }
   if (result == PN_OK) result = pn_range_shape(gpu, &maps->range, &want->range, layers * count, width, height);
   if (result != PN_OK) return result;
@@ -50,7 +49,11 @@ static pn_result draw_layer(const drawing *d, pn_attachment target, int layer, b
   const pn_maps_want *want = &d->maps->want;
   int width = d->maps->depth.width, height = d->maps->depth.height;
   pn_faces faces = farthest ? want->far_faces : want->near_faces;
-  pn_pass pass = {.depth = target, .width = width, .height = height, .faces = faces, .depth_clamp = true,
+  pn_pass pass = {.depth = target,
+                  .width = width,
+                  .height = height,
+                  .faces = faces,
+                  .depth_clamp = true,
                   .depth_use = farthest ? PN_DEPTH_FARTHEST : PN_DEPTH_NEAREST,
                   .depth_range = {PN_DEPTH_MARGIN, 1 - PN_DEPTH_MARGIN}};
   pn_result result = pn_pass_begin(d->gpu, &pass);

@@ -18,10 +18,10 @@ typedef struct {
 /* What a technique wants to have drawn. In the array texture, a map's layers are: near surfaces first, nearest to
  * farther, then the farthest one. */
 typedef struct {
-  int near_layers;      /* peeled layers from the nearest; 0..PN_LAYERS_MAX */
-  bool farthest;        /* the farthest surface, as the last layer */
+  int near_layers;                /* peeled layers from the nearest; 0..PN_LAYERS_MAX */
+  bool farthest;                  /* the farthest surface, as the last layer */
   pn_faces near_faces, far_faces; /* which surfaces count: PN_FACES_ANY where it does not matter */
-  pn_range_kind range;  /* what summarises every layer */
+  pn_range_kind range;            /* what summarises every layer */
 } pn_maps_want;
 
 /* The uniform block of maps.glsl, std140. */
@@ -53,13 +53,14 @@ typedef struct {
   const pn_frame *frame;
   pn_casters *casters;
   uint32_t groups;
-  int map;             /* its place in the list */
+  int map; /* its place in the list */
   double bounds[4], w_near, w_far, shear[2];
 } pn_map_draw;
 pn_result pn_maps_draw(pn_gpu *gpu, pn_maps *maps, const pn_map_draw *draw);
 /* Fills pyramid or stack from what was drawn; the block must be bound. (maps/range.c) */
 pn_result pn_range_build(pn_gpu *gpu, pn_maps *maps);
-pn_result pn_range_shape(pn_gpu *gpu, pn_texture *texture, const pn_range_kind *kind, int layers, int width, int height);
+pn_result pn_range_shape(pn_gpu *gpu, pn_texture *texture, const pn_range_kind *kind, int layers, int width,
+                         int height);
 pn_result pn_range_prepare(pn_gpu *gpu, const pn_range_kind *kind);
 pn_result pn_maps_prepare(pn_gpu *gpu, const pn_maps_want *want);
 /* The parts of the block that do not depend on single maps. count: of maps. */

@@ -21,13 +21,15 @@ static int larger(int a, int b) { return a > b ? a : b; }
 
 /* The pyramid's first level has a texel for each of the map's, padded to powers of two; the stack has every level at
  * full size, as array layers. */
-pn_result pn_range_shape(pn_gpu *gpu, pn_texture *texture, const pn_range_kind *kind, int layers, int width, int height) {
+pn_result pn_range_shape(pn_gpu *gpu, pn_texture *texture, const pn_range_kind *kind, int layers, int width,
+                         int height) {
   if (kind->structure == PN_RANGE_PYRAMID) {
     int w = power_above(width), h = power_above(height);
     return pn_texture_shape(gpu, texture, GL_RG32F, w, h, layers, level_count(larger(w, h)));
   }
   if (kind->structure == PN_RANGE_STACK)
-    return pn_texture_shape(gpu, texture, GL_RG32F, width, height, layers * level_count(power_above(larger(width, height))), 1);
+    return pn_texture_shape(gpu, texture, GL_RG32F, width, height,
+                            layers * level_count(power_above(larger(width, height))), 1);
   pn_texture_free(gpu, texture, false);
   return PN_OK;
 }

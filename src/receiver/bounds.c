@@ -11,7 +11,7 @@ static pn_result shape(pn_gpu *gpu, pn_texture images[2], int width, int height)
 
 static pn_result step(pn_receiver *receiver, const pn_frame *frame, const pn_texture *from, const pn_texture *to) {
   pn_gpu *gpu = &receiver->object.context->gpu;
-  const char *defines = from                         ? "PN_FIRST 0\n"
+  const char *defines = from                          ? "PN_FIRST 0\n"
                         : receiver->desc.mask_texture ? "PN_FIRST 1\nPN_MASK 1\n"
                                                       : "PN_FIRST 1\nPN_MASK 0\n";
   pn_program_key key = {"shaders/screen.vert.glsl", "receiver/bounds.frag.glsl", NULL, defines};
@@ -19,7 +19,8 @@ static pn_result step(pn_receiver *receiver, const pn_frame *frame, const pn_tex
   pn_result result = pn_program_get(gpu, &key, &program);
   if (result != PN_OK) return result;
   pn_pass pass = {.color = {{to[0].id, GL_TEXTURE_2D, 0, 0}, {to[1].id, GL_TEXTURE_2D, 0, 0}},
-                  .width = to->width, .height = to->height};
+                  .width = to->width,
+                  .height = to->height};
   result = pn_screen_begin(gpu, &pass, program);
   if (result != PN_OK) return result;
   if (from) {

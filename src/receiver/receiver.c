@@ -10,14 +10,8 @@ static pn_gpu *gpu_of(const pn_receiver *receiver) { return &receiver->object.co
 
 /* ---- the object -------------------------------------------------------------------------------------------------- */
 
-pn_result pn_receiver_create(pn_context *context, pn_receiver **out) {
-  if (!context) return PN_ERROR_ARGUMENT;
-  if (!out) return pn_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_receiver_create: out is NULL");
-  *out = pn_object_create(context, PN_OBJECT_RECEIVER, sizeof **out);
-  return *out ? PN_OK : PN_ERROR_OUT_OF_MEMORY;
-}
-
-void pn_receiver_free(pn_receiver *receiver, bool abandon) {
+static void free_receiver(pn_object *object, bool abandon) {
+  pn_receiver *receiver = (pn_receiver *)object;
   pn_gpu *gpu = gpu_of(receiver);
   pn_pairs_drop(&receiver->object, abandon);
   for (int i = 0; i < 4; i++) pn_texture_free(gpu, &receiver->bounds[i], abandon);
@@ -26,11 +20,19 @@ void pn_receiver_free(pn_receiver *receiver, bool abandon) {
   pn_free(gpu, receiver);
 }
 
+pn_result pn_receiver_create(pn_context *context, pn_receiver **out) {
+  if (!context) return PN_ERROR_ARGUMENT;
+  if (!out)
+    return pn_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_receiver_create: out is NULL");
+  *out = pn_object_create(context, free_receiver, sizeof **out);
+  return *out ? PN_OK : PN_ERROR_OUT_OF_MEMORY;
+}
+
 void pn_receiver_destroy(pn_receiver **receiver) {
   if (!receiver || !*receiver) return;
   pn_context *context = (*receiver)->object.context;
   pn_enter(context);
-  pn_receiver_free(*receiver, false);
+  free_receiver(&(*receiver)->object, false);
   pn_leave(context, PN_OK);
   *receiver = NULL;
 }
@@ -118,19 +120,22 @@ static void texture_size(pn_gpu *gpu, GLenum target, pn_gl texture, int *width, 
 
 static pn_result check_values(pn_gpu *gpu, const pn_receiver_desc *d) {
   if ((d->depth_texture != 0) == (d->use_framebuffer != 0))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_SOURCE, "one of depth_texture and use_framebuffer must be set");
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_SOURCE,
+                   "one of depth_texture and use_framebuffer must be set");
   if (!pn_floats_finite(d->view, 16) || !pn_floats_finite(d->projection, 16) || !isfinite(d->background_depth))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX, "view, projection or background depth is not finite");
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX,
+                   "view, projection or background depth is not finite");
   if (d->scale != 0 && d->scale != 1 && d->scale != 2 && d->scale != 4)
     return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_SCALE, "scale %d is not 1, 2 or 4", d->scale);
   if ((int)d->format < PN_FORMAT_R16F || d->format > PN_FORMAT_R8)
     return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_FORMAT, "result format %d is unknown", (int)d->format);
   if (d->normal_texture && ((int)d->normal_encoding < 0 || d->normal_encoding > PN_NORMAL_OCTAHEDRON_UNSIGNED))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_NORMAL, "normal encoding %d is unknown", (int)d->normal_encoding);
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_NORMAL, "normal encoding %d is unknown",
+                   (int)d->normal_encoding);
   if (d->x < 0 || d->y < 0 || d->width < 0 || d->height < 0 || (d->width == 0) != (d->height == 0) ||
       (d->use_framebuffer && d->width == 0))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_VIEW, "view %d x %d at %d, %d is not a rectangle", d->width,
-                   d->height, d->x, d->y);
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_VIEW, "view %d x %d at %d, %d is not a rectangle",
+                   d->width, d->height, d->x, d->y);
   return PN_OK;
 }
 
@@ -148,13 +153,15 @@ static pn_result check_view(pn_gpu *gpu, pn_receiver_desc *d, GLenum target) {
 }
 
 /* Companion textures have the depth texture's layout, or the view's when depth comes from a framebuffer. */
-static pn_result check_companion(pn_gpu *gpu, const pn_receiver_desc *d, pn_gl texture, pn_message message, const char *name) {
+static pn_result check_companion(pn_gpu *gpu, const pn_receiver_desc *d, pn_gl texture, pn_message message,
+                                 const char *name) {
   if (!texture) return PN_OK;
   int width = 0, height = 0;
   if (GL(gpu, IsTexture)(texture)) texture_size(gpu, GL_TEXTURE_2D, texture, &width, &height);
   int x = d->depth_texture ? d->x : 0, y = d->depth_texture ? d->y : 0;
   if (width >= x + d->width && height >= y + d->height) return PN_OK;
-  return pn_fail(gpu, PN_ERROR_ARGUMENT, message, "the %s texture, %d x %d, does not cover the view", name, width, height);
+  return pn_fail(gpu, PN_ERROR_ARGUMENT, message, "the %s texture, %d x %d, does not cover the view", name, width,
+                 height);
 }
 
 /* Normals are colours. */
@@ -183,7 +190,8 @@ static float normal_error(pn_gpu *gpu, const pn_receiver_desc *d) {
 
 /* ---- matrices ---------------------------------------------------------------------------------------------------- */
 
-static bool invert_view(const pn_receiver_desc *d, const float at[2], pn_matrix *scene_from_clip, pn_matrix *scene_from_pixel) {
+static bool invert_view(const pn_receiver_desc *d, const float at[2], pn_matrix *scene_from_clip,
+                        pn_matrix *scene_from_pixel) {
   pn_matrix view = pn_matrix_from_floats(d->view), projection = pn_matrix_from_floats(d->projection);
   pn_matrix clip_from_scene = pn_matrix_multiply(&projection, &view);
   if (!pn_matrix_invert(&clip_from_scene, scene_from_clip)) return false;
@@ -212,7 +220,9 @@ static pn_result copy_framebuffer(pn_receiver *receiver, const pn_receiver_desc 
   pn_gpu *gpu = gpu_of(receiver);
   pn_result result = pn_texture_shape(gpu, &receiver->copy, kind_format(kind), d->width, d->height, 0, 1);
   if (result != PN_OK) return result;
-  pn_pass pass = {.depth = {receiver->copy.id, GL_TEXTURE_2D, 0, 0}, .width = d->width, .height = d->height,
+  pn_pass pass = {.depth = {receiver->copy.id, GL_TEXTURE_2D, 0, 0},
+                  .width = d->width,
+                  .height = d->height,
                   .depth_use = PN_DEPTH_WRITE};
   result = pn_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
@@ -230,7 +240,9 @@ static pn_result copy_multisample(pn_receiver *receiver, const pn_receiver_desc 
   if (result == PN_OK)
     result = pn_texture_shape(gpu, &receiver->copy, GL_DEPTH_COMPONENT32F, d->width, d->height, 0, 1);
   if (result != PN_OK) return result;
-  pn_pass pass = {.depth = {receiver->copy.id, GL_TEXTURE_2D, 0, 0}, .width = d->width, .height = d->height,
+  pn_pass pass = {.depth = {receiver->copy.id, GL_TEXTURE_2D, 0, 0},
+                  .width = d->width,
+                  .height = d->height,
                   .depth_use = PN_DEPTH_WRITE};
   result = pn_screen_begin(gpu, &pass, program);
   if (result != PN_OK) return result;

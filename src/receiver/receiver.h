@@ -3,7 +3,7 @@
 #define PN_RECEIVER_RECEIVER_H
 
 #include "context.h"
-#include "maps/fit.h"
+#include "space/region.h"
 
 struct pn_receiver {
   pn_object object;
@@ -13,8 +13,8 @@ struct pn_receiver {
   bool copied;           /* the copy is what is read, and its origin is the view's */
   pn_matrix scene_from_clip;
   pn_matrix scene_from_pixel; /* (x + 1/2, y + 1/2, stored depth, 1) in the view */
-  pn_texture bounds[4];  /* what bounds.c reduces into: two pairs, in turn */
-  float quantum[4];      /* error of a depth: absolute, relative; background; angle error of given normals */
+  pn_texture bounds[4];       /* what bounds.c reduces into: two pairs, in turn */
+  float quantum[4];           /* error of a depth: absolute, relative; background; angle error of given normals */
 };
 
 /* Size of the image that visibility is computed at: 1/scale, rounded up. */

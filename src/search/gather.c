@@ -9,7 +9,8 @@ typedef struct {
 
 static pn_result gather_program(pn_gpu *gpu, const gather_variant *v, const pn_program **out) {
   char defines[512];
-  snprintf(defines, sizeof defines, "%s%sPN_UPSAMPLE %d\nPN_DEBUG %d\n", v->technique, v->receiver, v->upsample, v->debug);
+  snprintf(defines, sizeof defines, "%s%sPN_UPSAMPLE %d\nPN_DEBUG %d\n", v->technique, v->receiver, v->upsample,
+           v->debug);
   pn_program_key key = {"shaders/screen.vert.glsl", "receiver/visibility.glsl", v->shader, defines};
   return pn_program_get(gpu, &key, out);
 }

@@ -16,6 +16,7 @@ pn_range_kind pn_search_range(const pn_search_values *v) {
 int pn_search_defines(const pn_search_values *v, char *out, size_t size) {
   bool descent = descends(v);
   int refine = v->hierarchy == PN_HIERARCHY_NONE ? 0 : v->hierarchy == PN_HIERARCHY_MSSM && !descent ? 2 : 1;
-  return snprintf(out, size, "PN_PRIMITIVE %d\nPN_GAPS %d\nPN_EDGES %d\nPN_DESCENT %d\nPN_REFINE %d\nPN_MERGE %d\nPN_CAP %d\n",
+  return snprintf(out, size,
+                  "PN_PRIMITIVE %d\nPN_GAPS %d\nPN_EDGES %d\nPN_DESCENT %d\nPN_REFINE %d\nPN_MERGE %d\nPN_CAP %d\n",
                   (int)v->primitive, v->gaps, v->edges, descent, refine, v->merge_index, v->cap_index);
 }

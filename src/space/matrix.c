@@ -3,9 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-pn_matrix pn_matrix_identity(void) {
-  return (pn_matrix){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
-}
+pn_matrix pn_matrix_identity(void) { return (pn_matrix){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}; }
 
 pn_matrix pn_matrix_from_floats(const float m[16]) {
   pn_matrix a;

@@ -4,7 +4,9 @@
 
 #include <stdbool.h>
 
-typedef struct { double m[16]; } pn_matrix;
+typedef struct {
+  double m[16];
+} pn_matrix;
 
 pn_matrix pn_matrix_identity(void);
 pn_matrix pn_matrix_from_floats(const float m[16]);

@@ -52,7 +52,8 @@ static void narrow(const double in[3], float out[3]) {
   for (int i = 0; i < 3 && out; i++) out[i] = (float)in[i];
 }
 
-pn_result pn_light_frame(const float direction[3], const float up[3], float direction_out[3], float u_out[3], float v_out[3]) {
+pn_result pn_light_frame(const float direction[3], const float up[3], float direction_out[3], float u_out[3],
+                         float v_out[3]) {
   static const float others[2][3] = {{0, 0, -1}, {1, 0, 0}};
   if (!direction || !pn_floats_finite(direction, 3)) return PN_ERROR_ARGUMENT;
   double z[3], u[3], v[3];

@@ -7,8 +7,8 @@
 #include <string.h>
 
 static const pn_technique_class *const classes[] = {
-    &pn_technique_hard, &pn_technique_pcf, &pn_technique_pcss, &pn_technique_average, &pn_technique_backprojection,
-    &pn_technique_bitmask,
+    &pn_technique_hard,           &pn_technique_pcf,     &pn_technique_pcss, &pn_technique_average,
+    &pn_technique_backprojection, &pn_technique_bitmask,
 };
 enum { COUNT = sizeof classes / sizeof *classes };
 
@@ -159,7 +159,8 @@ static pn_result read_pairs(const pn_technique *t, const char *text, double *val
   return read_all_pairs(t, text, values, e);
 }
 
-pn_result pn_technique_parse(const char *spec, const pn_technique **technique, double *values, char *why, size_t why_size) {
+pn_result pn_technique_parse(const char *spec, const pn_technique **technique, double *values, char *why,
+                             size_t why_size) {
   explanation e = {why, why_size};
   char copy[512], list[256];
   if (why && why_size) why[0] = 0;

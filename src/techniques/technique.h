@@ -11,15 +11,15 @@ typedef struct {
   pn_gpu *gpu;
   const pn_light_desc *desc;
   const pn_frame *frame;
-  const double *values;       /* parameters, in the order of the table */
-  pn_maps *maps;              /* drawn by pn_maps_update as the technique wanted them */
-  pn_uniform_buffer *block;   /* the light's, bound */
-  pn_casters *casters;        /* of the last pn_maps_update; NULL when they are gone */
+  const double *values;     /* parameters, in the order of the table */
+  pn_maps *maps;            /* drawn by pn_maps_update as the technique wanted them */
+  pn_uniform_buffer *block; /* the light's, bound */
+  pn_casters *casters;      /* of the last pn_maps_update; NULL when they are gone */
   uint32_t groups;
-  const pn_region *visible;   /* what that update was fitted to, or NULL */
+  const pn_region *visible; /* what that update was fitted to, or NULL */
   pn_receiver *receiver;
   pn_pair *pair;
-  pn_attachment target;       /* where visibility goes */
+  pn_attachment target; /* where visibility goes */
 } pn_visibility_request;
 
 enum { PN_TECHNIQUE_DEFINES = 256 };

@@ -5,8 +5,8 @@
 enum { BATCH = PN_MAPS_MAX };
 
 static const pn_parameter parameters[] = {
-    {"samples", "", "number of depth maps, each from its own point of the light", "Bitmask Soft Shadows, Fig. 9a", PN_INT, 1,
-     65536, 1024, NULL},
+    {"samples", "", "number of depth maps, each from its own point of the light", "Bitmask Soft Shadows, Fig. 9a",
+     PN_INT, 1, 65536, 1024, NULL},
 };
 
 /* It draws its maps itself, batch by batch; pn_maps_update only finds out whether anything casts. */
@@ -39,9 +39,14 @@ typedef struct {
 
 static void fit_point(const averaging *a, const double shear[2], pn_fit_result *fit) {
   const pn_visibility_request *r = a->request;
-  pn_fit_request request = {.frame = r->frame, .shear = {shear[0], shear[1]}, .near_distance = r->desc->near_distance,
-                            .range = r->desc->range, .width = r->desc->map_width, .height = r->desc->map_height,
-                            .given = r->desc->fit == PN_FIT_GIVEN ? r->desc->fit_bounds : NULL, .visible = r->visible};
+  pn_fit_request request = {.frame = r->frame,
+                            .shear = {shear[0], shear[1]},
+                            .near_distance = r->desc->near_distance,
+                            .range = r->desc->range,
+                            .width = r->desc->map_width,
+                            .height = r->desc->map_height,
+                            .given = r->desc->fit == PN_FIT_GIVEN ? r->desc->fit_bounds : NULL,
+                            .visible = r->visible};
   pn_fit_maps(r->casters, r->groups, &request, fit);
   if (!fit->empty) return;
   request.visible = NULL; /* from this point no caster shadows anything seen: any map will do */
@@ -53,9 +58,14 @@ static pn_result draw_map(averaging *a, int map, const double shear[2]) {
   const pn_visibility_request *r = a->request;
   pn_fit_result fit;
   fit_point(a, shear, &fit);
-  pn_map_draw draw = {.frame = r->frame, .casters = r->casters, .groups = r->groups, .map = map,
+  pn_map_draw draw = {.frame = r->frame,
+                      .casters = r->casters,
+                      .groups = r->groups,
+                      .map = map,
                       .bounds = {fit.bounds[0], fit.bounds[1], fit.bounds[2], fit.bounds[3]},
-                      .w_near = fit.w_near, .w_far = fit.w_far, .shear = {shear[0], shear[1]}};
+                      .w_near = fit.w_near,
+                      .w_far = fit.w_far,
+                      .shear = {shear[0], shear[1]}};
   if (fit.tiles == 1)
     for (int i = 0; i < 4; i++) draw.bounds[i] = fit.tile[0][i];
   pn_block_map(&a->block, r->gpu, &draw, r->desc->map_width, r->desc->map_height);
@@ -160,9 +170,12 @@ static pn_result prepare(pn_gpu *gpu, const double *values) {
 }
 
 const pn_technique_class pn_technique_average = {
-    .table = {.name = "average", .title = "average of hard shadows",
+    .table = {.name = "average",
+              .title = "average of hard shadows",
               .help = "many hard shadow maps from well-spread points of the light: slow, and right with enough of them",
-              .parameters = parameters, .parameter_count = 1, .self_shadows = 1},
+              .parameters = parameters,
+              .parameter_count = 1,
+              .self_shadows = 1},
     .want = want,
     .draw = draw,
     .prepare = prepare,

@@ -7,34 +7,43 @@ static const char *const presets[] = {"fast", "good", "exact", NULL};
 static const char *const primitives[] = {"patch", "quad", NULL};
 
 static const pn_parameter parameters[COUNT] = {
-    [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/backprojection.md",
-                PN_CHOICE, 0, 2, 1, presets},
+    [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it",
+                "docs/techniques/backprojection.md", PN_CHOICE, 0, 2, 1, presets},
     [PRIMITIVE] = {"primitive", "", "what texels stand for: rectangles, or quads between texel centres",
                    "Bitmask Soft Shadows, section 4", PN_CHOICE, 0, 1, PN_PRIMITIVE_PATCH, primitives},
-    [GAPS] = {"gaps", "", "patches are widened to meet their left and lower neighbours", "Guennebaud et al. 2006", PN_BOOL, 0, 1,
-              1, NULL},
-    [LAYERS] = {"layers", "", "peeled layers, merged by maximum", "Bitmask Soft Shadows, Fig. 9d", PN_INT, 1, PN_LAYERS_MAX, 1, NULL},
-    [HIERARCHY] = {"hierarchy", "", "what narrows the search: range stack, range pyramid, nothing; with merge above 0 the pyramid",
+    [GAPS] = {"gaps", "", "patches are widened to meet their left and lower neighbours", "Guennebaud et al. 2006",
+              PN_BOOL, 0, 1, 1, NULL},
+    [LAYERS] = {"layers", "", "peeled layers, merged by maximum", "Bitmask Soft Shadows, Fig. 9d", PN_INT, 1,
+                PN_LAYERS_MAX, 1, NULL},
+    [HIERARCHY] = {"hierarchy", "",
+                   "what narrows the search: range stack, range pyramid, nothing; with merge above 0 the pyramid",
                    "Bitmask Soft Shadows, section 5", PN_CHOICE, 0, 2, PN_HIERARCHY_MSSM, pn_hierarchy_names},
     [CAP] = {"cap", "texels", "at most N x N primitives a pixel, coarser ones past it; 0 = no cap; with merge=0 only",
              "Guennebaud et al. 2006", PN_INT, 0, 4096, 0, NULL},
-    [MERGE] = {"merge", "%", "blocks are one primitive where that moves no edge by more than this part of the light; 0 = every texel", "",
-               PN_FLOAT, 0, 50, 1, NULL},
-    [EDGES] = {"edges", "", "quads that lack a corner are covered by the parts of the others: thin things keep their shadow; off = as in the paper", "",
-               PN_BOOL, 0, 1, 1, NULL},
+    [MERGE] = {"merge", "%",
+               "blocks are one primitive where that moves no edge by more than this part of the light; 0 = every texel",
+               "", PN_FLOAT, 0, 50, 1, NULL},
+    [EDGES] = {"edges", "",
+               "quads that lack a corner are covered by the parts of the others: thin things keep their shadow; off = "
+               "as in the paper",
+               "", PN_BOOL, 0, 1, 1, NULL},
 };
 
 static void preset(int choice, double *values) {
   for (int i = 0; i < COUNT; i++) values[i] = parameters[i].initial;
   values[PRESET] = choice;
-  if (choice == 0) values[MERGE] = 2;   /* fast */
+  if (choice == 0) values[MERGE] = 2;    /* fast */
   if (choice == 2) values[MERGE] = 0.25; /* exact */
 }
 
 static pn_search_values search_values(const double *values) {
-  return (pn_search_values){.primitive = (pn_primitive)values[PRIMITIVE], .hierarchy = (pn_hierarchy)values[HIERARCHY],
-                            .gaps = values[GAPS] != 0 && values[PRIMITIVE] == PN_PRIMITIVE_PATCH, .edges = values[EDGES] != 0, .merge = values[MERGE],
-                            .merge_index = MERGE, .cap_index = CAP};
+  return (pn_search_values){.primitive = (pn_primitive)values[PRIMITIVE],
+                            .hierarchy = (pn_hierarchy)values[HIERARCHY],
+                            .gaps = values[GAPS] != 0 && values[PRIMITIVE] == PN_PRIMITIVE_PATCH,
+                            .edges = values[EDGES] != 0,
+                            .merge = values[MERGE],
+                            .merge_index = MERGE,
+                            .cap_index = CAP};
 }
 
 static void want(const double *values, pn_maps_want *out) {
@@ -48,9 +57,13 @@ static void defines(const double *values, char out[PN_TECHNIQUE_DEFINES]) {
 }
 
 const pn_technique_class pn_technique_backprojection = {
-    .table = {.name = "backprojection", .title = "soft shadow mapping by backprojection",
+    .table = {.name = "backprojection",
+              .title = "soft shadow mapping by backprojection",
               .help = "adds up what every micro-primitive of one map hides of the light; overlaps count twice",
-              .parameters = parameters, .parameter_count = COUNT, .forward = 1, .self_shadows = 1},
+              .parameters = parameters,
+              .parameter_count = COUNT,
+              .forward = 1,
+              .self_shadows = 1},
     .want = want,
     .preset = preset,
     .shader = "techniques/backprojection/backprojection.glsl",

@@ -13,23 +13,30 @@ static const char *const primitives[] = {"patch", "quad", "quad-exact", NULL};
 static const char *const maps[] = {"front", "two-sided", "layers", NULL};
 
 static const pn_parameter parameters[COUNT] = {
-    [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/bitmask.md", PN_CHOICE, 0,
-                2, 1, presets},
+    [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/bitmask.md",
+                PN_CHOICE, 0, 2, 1, presets},
     [SAMPLES] = {"samples", "", "points on the light: N x N, or 16 x 16 jittered", "section 3, Fig. 3", PN_CHOICE, 0, 3,
                  SAMPLES_16J, samples},
-    [PRIMITIVE] = {"primitive", "", "what texels stand for: rectangles, or quads between texel centres, covered by the paper's rectangle or exactly",
+    [PRIMITIVE] = {"primitive", "",
+                   "what texels stand for: rectangles, or quads between texel centres, covered by the paper's "
+                   "rectangle or exactly",
                    "section 4", PN_CHOICE, 0, 2, PN_PRIMITIVE_QUAD, primitives},
     [MAPS] = {"maps", "", "nearest surface, nearest and farthest, or peeled layers", "section 3.2", PN_CHOICE, 0, 2,
               MAPS_TWO_SIDED, maps},
-    [LAYERS] = {"layers", "", "how many layers are peeled, with maps=layers", "section 3.2", PN_INT, 1, PN_LAYERS_MAX, 2, NULL},
-    [HIERARCHY] = {"hierarchy", "", "what narrows the search: range stack, range pyramid, nothing; with merge above 0 the pyramid",
+    [LAYERS] = {"layers", "", "how many layers are peeled, with maps=layers", "section 3.2", PN_INT, 1, PN_LAYERS_MAX,
+                2, NULL},
+    [HIERARCHY] = {"hierarchy", "",
+                   "what narrows the search: range stack, range pyramid, nothing; with merge above 0 the pyramid",
                    "section 5", PN_CHOICE, 0, 2, PN_HIERARCHY_MSSM, pn_hierarchy_names},
-    [CAP] = {"cap", "texels", "at most N x N primitives a pixel, coarser ones past it; 0 = no cap; with merge=0 only", "section 7", PN_INT, 0,
-             4096, 0, NULL},
-    [MERGE] = {"merge", "%", "blocks are one primitive where that moves no edge by more than this part of the light; 0 = every texel", "",
-               PN_FLOAT, 0, 50, 1, NULL},
-    [EDGES] = {"edges", "", "quads that lack a corner are covered by the parts of the others: thin things keep their shadow; off = as in the paper", "",
-               PN_BOOL, 0, 1, 1, NULL},
+    [CAP] = {"cap", "texels", "at most N x N primitives a pixel, coarser ones past it; 0 = no cap; with merge=0 only",
+             "section 7", PN_INT, 0, 4096, 0, NULL},
+    [MERGE] = {"merge", "%",
+               "blocks are one primitive where that moves no edge by more than this part of the light; 0 = every texel",
+               "", PN_FLOAT, 0, 50, 1, NULL},
+    [EDGES] = {"edges", "",
+               "quads that lack a corner are covered by the parts of the others: thin things keep their shadow; off = "
+               "as in the paper",
+               "", PN_BOOL, 0, 1, 1, NULL},
 };
 
 static void preset(int choice, double *values) {
@@ -49,14 +56,20 @@ static void preset(int choice, double *values) {
 }
 
 static pn_search_values search_values(const double *values) {
-  return (pn_search_values){.primitive = (pn_primitive)values[PRIMITIVE], .hierarchy = (pn_hierarchy)values[HIERARCHY],
-                            .gaps = false, .edges = values[EDGES] != 0, .merge = values[MERGE], .merge_index = MERGE, .cap_index = CAP};
+  return (pn_search_values){.primitive = (pn_primitive)values[PRIMITIVE],
+                            .hierarchy = (pn_hierarchy)values[HIERARCHY],
+                            .gaps = false,
+                            .edges = values[EDGES] != 0,
+                            .merge = values[MERGE],
+                            .merge_index = MERGE,
+                            .cap_index = CAP};
 }
 
 static void want(const double *values, pn_maps_want *out) {
   pn_search_values search = search_values(values);
   int kind = (int)values[MAPS];
-  *out = (pn_maps_want){.near_layers = kind == MAPS_LAYERS ? (int)values[LAYERS] : 1, .farthest = kind == MAPS_TWO_SIDED,
+  *out = (pn_maps_want){.near_layers = kind == MAPS_LAYERS ? (int)values[LAYERS] : 1,
+                        .farthest = kind == MAPS_TWO_SIDED,
                         .range = pn_search_range(&search)};
 }
 
@@ -68,9 +81,13 @@ static void defines(const double *values, char out[PN_TECHNIQUE_DEFINES]) {
 }
 
 const pn_technique_class pn_technique_bitmask = {
-    .table = {.name = "bitmask", .title = "bitmask soft shadows",
+    .table = {.name = "bitmask",
+              .title = "bitmask soft shadows",
               .help = "every occluder sets the bits of the light's sample points it hides; occluders fuse correctly",
-              .parameters = parameters, .parameter_count = COUNT, .forward = 1, .self_shadows = 1},
+              .parameters = parameters,
+              .parameter_count = COUNT,
+              .forward = 1,
+              .self_shadows = 1},
     .want = want,
     .preset = preset,
     .shader = "techniques/bitmask/bitmask.glsl",

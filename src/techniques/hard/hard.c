@@ -6,8 +6,11 @@ static void want(const double *values, pn_maps_want *out) {
 }
 
 const pn_technique_class pn_technique_hard = {
-    .table = {.name = "hard", .title = "hard shadow", .help = "one map, one comparison: the shadow of the light's centre",
-              .forward = 1, .self_shadows = 1},
+    .table = {.name = "hard",
+              .title = "hard shadow",
+              .help = "one map, one comparison: the shadow of the light's centre",
+              .forward = 1,
+              .self_shadows = 1},
     .want = want,
     .shader = "techniques/hard/hard.glsl",
 };

@@ -14,9 +14,13 @@ static void want(const double *values, pn_maps_want *out) {
 }
 
 const pn_technique_class pn_technique_pcf = {
-    .table = {.name = "pcf", .title = "percentage-closer filtering",
+    .table = {.name = "pcf",
+              .title = "percentage-closer filtering",
               .help = "a hard shadow with its edge smoothed over some texels, whatever the light's size",
-              .parameters = parameters, .parameter_count = 2, .forward = 1, .self_shadows = 1},
+              .parameters = parameters,
+              .parameter_count = 2,
+              .forward = 1,
+              .self_shadows = 1},
     .want = want,
     .shader = "techniques/pcf/pcf.glsl",
 };

@@ -1,0 +1,136 @@
+/* pn_maps_update: what casts, fitted and drawn. */
+#include <string.h>
+
+#include "light.h"
+
+/* What PN_FIT_FRUSTUM looks at; for PN_FIT_VISIBLE too it comes first, because it costs nothing and may settle the
+ * matter. */
+static pn_result find_frusta(pn_light *light, pn_receiver *const *receivers, int count) {
+  bool wanted = light->desc.fit == PN_FIT_VISIBLE || light->desc.fit == PN_FIT_FRUSTUM;
+  light->has_visible = wanted && count > 0;
+  light->visible = pn_region_empty();
+  for (int i = 0; i < count && light->has_visible; i++) {
+    if (!receivers[i] || !receivers[i]->set)
+      return pn_fail(pn_light_gpu(light), PN_ERROR_NOT_READY, PN_MESSAGE_RECEIVER_UNSET,
+                     "visible receiver %d was never set", i);
+    pn_receiver_frustum(receivers[i], &light->frame, &light->visible);
+  }
+  return PN_OK;
+}
+
+/* What PN_FIT_VISIBLE looks at: the surfaces themselves. */
+static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, int count) {
+  light->visible = pn_region_empty();
+  pn_block_frame(&light->maps.block, &light->frame, pn_light_gpu(light), 0, 0, 1, 1);
+  pn_result result = pn_light_bind_block(light);
+  for (int i = 0; i < count && result == PN_OK; i++)
+    result = pn_receiver_bounds(receivers[i], &light->frame, &light->visible);
+  pn_clock_mark(pn_light_gpu(light), &light->clock, "fit");
+  return result;
+}
+
+static void fit_light(pn_light *light) {
+  const pn_light_desc *d = &light->desc;
+  pn_fit_request request = {.frame = &light->frame,
+                            .near_distance = d->near_distance,
+                            .range = d->range,
+                            .width = d->map_width,
+                            .height = d->map_height,
+                            .given = d->fit == PN_FIT_GIVEN ? d->fit_bounds : NULL,
+                            .visible = light->has_visible ? &light->visible : NULL};
+  pn_fit_maps(light->casters, light->groups, &request, &light->maps.fit);
+  if (!light->maps.fit.clamped || light->warned_angle) return;
+  light->warned_angle = true;
+  pn_note(pn_light_gpu(light), PN_LOG_WARNING, PN_MESSAGE_LIGHT_ANGLE,
+          "the map would open past 170 degrees; casters beyond are left out");
+}
+
+static pn_map_draw tile_draw(const pn_light *light, int tile) {
+  const pn_fit_result *fit = &light->maps.fit;
+  pn_map_draw draw = {.frame = &light->frame,
+                      .casters = light->casters,
+                      .groups = light->groups,
+                      .map = tile,
+                      .w_near = fit->w_near,
+                      .w_far = fit->w_far};
+  memcpy(draw.bounds, fit->tile[tile], sizeof draw.bounds);
+  return draw;
+}
+
+static pn_result draw_maps(pn_light *light, const pn_maps_want *want) {
+  pn_gpu *gpu = pn_light_gpu(light);
+  pn_maps *maps = &light->maps;
+  int width = light->desc.map_width, height = light->desc.map_height;
+  pn_result result = pn_maps_shape(gpu, maps, want, maps->fit.tiles, width, height);
+  if (result != PN_OK) return result;
+  pn_block_frame(&maps->block, &light->frame, gpu, maps->fit.tiles, maps->layers, width, height);
+  for (int tile = 0; tile < maps->fit.tiles && result == PN_OK; tile++) {
+    pn_map_draw draw = tile_draw(light, tile);
+    pn_block_map(&maps->block, gpu, &draw, width, height);
+    result = pn_maps_draw(gpu, maps, &draw);
+  }
+  pn_clock_mark(gpu, &light->clock, "depth_map");
+  if (result != PN_OK || !want->range.structure) return result;
+  result = pn_light_bind_block(light);
+  if (result == PN_OK) result = pn_range_build(gpu, maps);
+  pn_clock_mark(gpu, &light->clock, "range");
+  return result;
+}
+
+static pn_result update_maps(pn_light *light, pn_receiver *const *visible, int visible_count) {
+  pn_result result = pn_gpu_check_lost(pn_light_gpu(light));
+  if (result == PN_OK) result = find_frusta(light, visible, visible_count);
+  if (result != PN_OK) return result;
+  fit_light(light);
+  if (light->desc.fit == PN_FIT_VISIBLE && light->has_visible && !light->maps.fit.empty) {
+    result = find_surfaces(light, visible, visible_count);
+    if (result != PN_OK) return result;
+    fit_light(light);
+  }
+  pn_maps_want want;
+  light->technique->want(light->values, &want);
+  if (!light->maps.fit.empty && pn_want_layers(&want) > 0) result = draw_maps(light, &want);
+  light->maps.ready = result == PN_OK;
+  return result;
+}
+
+pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
+                         int visible_count) {
+  if (!light) return PN_ERROR_ARGUMENT;
+  pn_gpu *gpu = pn_light_gpu(light);
+  if (!casters || (visible_count > 0 && !visible) || visible_count < 0)
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_maps_update: casters or visible is NULL");
+  if (!light->set) return pn_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_LIGHT_UNSET, "pn_light_set comes first");
+  light->casters = casters;
+  light->groups = groups;
+  pn_enter(light->object.context);
+  pn_clock_start(gpu, &light->clock);
+  pn_result result = update_maps(light, visible, visible_count);
+  pn_clock_end(gpu, &light->clock);
+  return pn_leave(light->object.context, result);
+}
+
+pn_result pn_light_maps(const pn_light *light, pn_maps_info *out) {
+  if (!light) return PN_ERROR_ARGUMENT;
+  if (!out)
+    return pn_fail(pn_light_gpu(light), PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_light_maps: out is NULL");
+  const pn_maps *maps = &light->maps;
+  if (!maps->ready)
+    return pn_fail(pn_light_gpu(light), PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "pn_maps_update comes first");
+  const double *b = maps->fit.bounds;
+  *out = (pn_maps_info){
+      .empty = maps->fit.empty,
+      .tiles = maps->fit.tiles,
+      .layers = maps->layers,
+      .width = light->desc.map_width,
+      .height = light->desc.map_height,
+      .s0 = (float)b[0],
+      .t0 = (float)b[1],
+      .s1 = (float)b[2],
+      .t1 = (float)b[3],
+      .w_near = (float)maps->fit.w_near,
+      .w_far = (float)maps->fit.w_far,
+      .gpu_memory = maps->depth.bytes + maps->range.bytes + maps->peel[0].bytes + maps->peel[1].bytes,
+  };
+  return PN_OK;
+}
