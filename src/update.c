@@ -21,8 +21,7 @@ static pn_result find_frusta(pn_light *light, pn_receiver *const *receivers, int
 /* What PN_FIT_VISIBLE looks at: the surfaces themselves. */
 static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, int count) {
   light->visible = pn_region_empty();
-  pn_block_frame(&light->maps.block, &light->frame, pn_light_gpu(light), 0, 0, 1, 1);
-  pn_result result = pn_light_bind_block(light);
+  pn_result result = PN_OK;
   for (int i = 0; i < count && result == PN_OK; i++)
     result = pn_receiver_bounds(receivers[i], &light->frame, &light->visible);
   pn_clock_mark(pn_light_gpu(light), &light->clock, "fit");

@@ -28,6 +28,7 @@ static pn_result step(pn_receiver *receiver, const pn_frame *frame, const pn_tex
     pn_bind_texture(gpu, PN_UNIT_RANGE, GL_TEXTURE_2D, from[1].id, false);
   } else {
     pn_receiver_bind(receiver, program, frame, 1);
+    GL(gpu, Uniform1i)(pn_uniform(program, "pn_sun"), frame->sun);
   }
   pn_draw_screen(gpu);
   return PN_OK;

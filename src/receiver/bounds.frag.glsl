@@ -4,8 +4,9 @@
 #define PN_BLOCK 16
 #if PN_FIRST
 #define PN_NORMALS 1 // only positions are wanted here
-#include "receiver/receiver.glsl"
+#include "space/space.glsl"
 #include "receiver/surface.glsl"
+uniform int pn_sun;
 #else
 uniform highp sampler2D pn_work;
 uniform highp sampler2D pn_range;
@@ -23,8 +24,8 @@ void main() {
 #if PN_FIRST
       if (!pn_view_has(at) || !pn_receives(at)) continue;
       vec3 p = pn_point(at, pn_depth_at(at));
-      if (!pn_is_sun(0) && p.z <= 0.0) continue;
-      vec3 m = pn_map_point(p, pn_is_sun(0));
+      if (pn_sun == 0 && p.z <= 0.0) continue;
+      vec3 m = pn_map_point(p, pn_sun != 0);
       least = vec4(min(least.xyz, m), 1.0);
       most = vec4(max(most.xyz, m), 1.0);
 #else

@@ -26,7 +26,7 @@ void pn_receiver_defines(const pn_receiver *receiver, char out[PN_RECEIVER_DEFIN
 /* Textures and uniforms for such a program, which is in use. scale 1: every pixel itself. */
 void pn_receiver_bind(pn_receiver *receiver, const pn_program *program, const pn_frame *frame, int scale);
 
-/* Adds what the camera sees to the region: reads a few numbers back. The light's block must be bound. */
+/* Adds what the camera sees to the region: reads a few numbers back. */
 pn_result pn_receiver_bounds(pn_receiver *receiver, const pn_frame *frame, pn_region *region);
 /* Adds what its frustum contains. */
 void pn_receiver_frustum(const pn_receiver *receiver, const pn_frame *frame, pn_region *region);

@@ -11,7 +11,7 @@ static pn_result gather_program(pn_gpu *gpu, const gather_variant *v, const pn_p
   char defines[512];
   snprintf(defines, sizeof defines, "%s%sPN_UPSAMPLE %d\nPN_DEBUG %d\n", v->technique, v->receiver, v->upsample,
            v->debug);
-  pn_program_key key = {"shaders/screen.vert.glsl", "receiver/visibility.glsl", v->shader, defines};
+  pn_program_key key = {"shaders/screen.vert.glsl", "search/visibility.glsl", v->shader, defines};
   return pn_program_get(gpu, &key, out);
 }
 

@@ -1,5 +1,5 @@
 // Single texels of a map as occluders.
-#include "receiver/receiver.glsl"
+#include "search/receiver.glsl"
 
 // The sample that a texel stores, as a point at the texel's centre; w is PN_NOTHING where it is empty.
 vec3 pn_texel_point(int light, highp sampler2DArray maps, int map, ivec2 texel) {

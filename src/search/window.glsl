@@ -1,6 +1,6 @@
 // The search window: texels that can block a receiver, from the light's extent and the nearest caster there, narrowed
 // by the range pyramid.
-#include "receiver/receiver.glsl"
+#include "search/receiver.glsl"
 
 // Largest and smallest w in a window of texels (both ends included), from the pyramid whose level i has them over 2^i
 // x 2^i texels. Four samples of the coarsest level that is still no larger than the window.

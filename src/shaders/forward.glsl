@@ -1,6 +1,6 @@
 // The techniques inside a host's own shader: the same functions as in the full-screen passes, for up to four lights.
 #include "shaders/precision.glsl"
-#include "receiver/receiver.glsl"
+#include "search/receiver.glsl"
 
 uniform highp sampler2DArray pn_maps_0, pn_maps_1, pn_maps_2, pn_maps_3;
 uniform highp sampler2DArray pn_range_0, pn_range_1, pn_range_2, pn_range_3;

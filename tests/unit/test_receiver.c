@@ -33,7 +33,7 @@ static const char vertex_text[] =
     "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }\n";
 
 static GLuint surface_program(pn_gpu *gpu, pn_receiver *receiver, pn_program *names) {
-  static const char *const paths[] = {"shaders/precision.glsl", "receiver/receiver.glsl", "receiver/surface.glsl", NULL};
+  static const char *const paths[] = {"shaders/precision.glsl", "search/receiver.glsl", "receiver/surface.glsl", NULL};
   static const char *const uniforms[] = {"pn_light_from_pixel", "pn_pixel_from_light", "pn_light_from_normal", "pn_eye",
                                          "pn_view", "pn_offset", "pn_quantum"};
   char defines[PN_RECEIVER_DEFINES], *text;

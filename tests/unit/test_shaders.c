@@ -33,7 +33,7 @@ static const char *const screen = "shaders/screen.vert.glsl";
 static void add_gathering(const char *shader, const char *own, int normals, int mask, int upsample, int debug) {
   char defines[PN_TECHNIQUE_DEFINES + 128];
   snprintf(defines, sizeof defines, "%sPN_NORMALS %d\nPN_MASK %d\nPN_UPSAMPLE %d\nPN_DEBUG %d\n", own, normals, mask, upsample, debug);
-  add_key(screen, "receiver/visibility.glsl", shader, defines);
+  add_key(screen, "search/visibility.glsl", shader, defines);
 }
 
 /* One set of a technique's defines: with every kind of receiver for the default one; the kinds do not look at the technique's defines. */

@@ -2,7 +2,7 @@
 //   float pn_technique(int light, sampler2DArray maps, sampler2DArray range, pn_Receiver r)
 // which follows this file.
 #include "shaders/precision.glsl"
-#include "receiver/receiver.glsl"
+#include "search/receiver.glsl"
 #include "receiver/surface.glsl"
 
 uniform highp sampler2DArray pn_maps;
@@ -24,7 +24,7 @@ float pn_pixel_visibility(ivec2 pixel) {
 }
 
 #if PN_UPSAMPLE
-#include "receiver/upsample.glsl"
+#include "search/upsample.glsl"
 #endif
 
 void main() {
