@@ -16,6 +16,7 @@ typedef struct {
   const pn_fit_request *request;
   pn_matrix light_from_scene;
   double z_max;   /* first look: the farthest caster */
+  double z_cut;   /* rectangle: boxes are cut off here, close before the light */
   double z_floor; /* rectangle: nearer casters are taken to be here */
   bool any, clamped;
   double least[3], most[3]; /* of the casters that count, (s', t', w) */
@@ -52,6 +53,7 @@ static void span_add(span3 *span, const fitting *f, const double p[3]) {
   double m[3];
   pn_map_point(p, f->request->frame->sun, m);
   for (int i = 0; i < 2; i++) m[i] -= f->request->shear[i] * m[2];
+  if (!f->request->frame->sun) m[2] = fmin(m[2], 1 / f->z_floor);
   for (int i = 0; i < 3; i++) {
     span->least[i] = fmin(span->least[i], m[i]);
     span->most[i] = fmax(span->most[i], m[i]);
@@ -59,19 +61,24 @@ static void span_add(span3 *span, const fitting *f, const double p[3]) {
   span->any = true;
 }
 
-/* The box's part before the light: corners, and where its edges meet the floor. */
+/* The box's part before the light: corners, and where its edges meet a plane close before it. A box that lies nearer than
+ * that altogether has its own plane, as close to its farthest corner in proportion. */
 static span3 box_span(const fitting *f, const double p[8][3]) {
   span3 span = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, false};
   bool sun = f->request->frame->sun;
+  double farthest = 0, plane = f->z_cut;
+  for (int i = 0; i < 8; i++) farthest = fmax(farthest, p[i][2]);
+  if (farthest <= plane) plane = nearest_share * farthest;
+  if (!sun && !(plane > 0)) return span; /* behind the light */
   for (int i = 0; i < 8; i++) {
-    if (sun || p[i][2] >= f->z_floor) span_add(&span, f, p[i]);
+    if (sun || p[i][2] >= plane) span_add(&span, f, p[i]);
     for (int axis = 0; axis < 3 && !sun; axis++) {
       int j = i | 1 << axis;
-      double a = p[i][2] - f->z_floor, b = p[j][2] - f->z_floor;
+      double a = p[i][2] - plane, b = p[j][2] - plane;
       if (j == i || (a < 0) == (b < 0)) continue;
       double t = a / (a - b), at[3];
       for (int c = 0; c < 3; c++) at[c] = p[i][c] + t * (p[j][c] - p[i][c]);
-      at[2] = f->z_floor;
+      at[2] = plane;
       span_add(&span, f, at);
     }
   }
@@ -232,7 +239,8 @@ void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_reques
   }
   memset(out, 0, sizeof *out);
   pn_casters_each_box(casters, groups, look_at_distance, &f);
-  f.z_floor = fmax(request->near_distance, nearest_share * f.z_max);
+  f.z_cut = nearest_share * f.z_max;
+  f.z_floor = fmax(request->near_distance, f.z_cut);
   pn_casters_each_box(casters, groups, add_box, &f);
   out->empty = !f.any;
   if (out->empty) return;

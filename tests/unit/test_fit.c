@@ -237,6 +237,23 @@ static void test_near_and_range(void **state) {
   request.near_distance = 2; /* w_near: nearer casters are taken to be there */
   pn_fit_result clamped = fit(&c, &request);
   assert_true(clamped.w_near > 0.5 && clamped.w_near <= 0.5 * (1 + 2.0 / 7));
+  request.near_distance = 20; /* all of them nearer: taken to be there, not left out */
+  pn_fit_result all_near = fit(&c, &request);
+  assert_false(all_near.empty);
+  assert_true(all_near.bounds[2] >= both.bounds[2] && all_near.w_near > 0.05 && all_near.w_far < 0.05);
+}
+
+/* A caster so close to the light that the map's depth cannot reach it and the far one both. */
+static void test_close_to_the_light(void **state) {
+  (void)state;
+  static pn_casters c;
+  pn_frame f = frame_along_z(false, 0.5);
+  pn_fit_request request = request_of(&f, 64);
+  memset(&c, 0, sizeof c);
+  put_box(&c, 0, v3(0, 0, 0.01), v3(0.001, 0.001, 0.001));
+  put_box(&c, 1, v3(0, 0, 100), v3(1, 1, 0.5));
+  pn_fit_result r = fit(&c, &request);
+  assert_true(r.bounds[2] >= 0.1 && r.bounds[0] <= -0.1); /* the small box opens wider than the large one */
 }
 
 /* ---- wide lights ---- */
@@ -460,7 +477,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_cover),         cmocka_unit_test(test_turned_instance),
       cmocka_unit_test(test_moving_inside), cmocka_unit_test(test_snapping_is_stable),
-      cmocka_unit_test(test_crossing_and_behind), cmocka_unit_test(test_near_and_range),
+      cmocka_unit_test(test_crossing_and_behind), cmocka_unit_test(test_near_and_range), cmocka_unit_test(test_close_to_the_light),
       cmocka_unit_test(test_tiles),         cmocka_unit_test(test_clamped_means_lost),
       cmocka_unit_test(test_visible_keeps), cmocka_unit_test(test_visible_cuts),
       cmocka_unit_test(test_frustum),       cmocka_unit_test(test_flat),
