@@ -20,8 +20,8 @@ vec2 pn_search_step(int light, highp sampler2DArray maps, pn_Receiver r, int n, 
     vec2 st = r.m.xy + at * window;
     int map = pn_map_at(light, st);
     vec3 q = pn_texel_point(light, maps, map, ivec2(floor(pn_map_texel(light, map, st))));
-    // What does not project onto the light itself blocks nothing, though it lies in the window of a nearer one.
-    vec2 reach = pn_search_window(pn_extent(light), q.z, r.m.z);
+    // A texel that does not project onto the light itself blocks nothing, though it lies in the window of a nearer one.
+    vec2 reach = pn_search_window(pn_extent(light), q.z, r.m.z) + 0.5 / pn_lights[light].map_bounds[map].zw;
     if (!pn_blocks_apart(light, r, q) || any(greaterThan(abs(q.xy - r.m.xy), reach))) continue;
     float weight = cell / ((q.z - r.m.z) * (q.z - r.m.z));
     sum += weight * vec2(q.z, 1.0);
