@@ -4,10 +4,22 @@
 /* Maps are drawn and read in batches: as many layers as a block holds. */
 enum { BATCH = PN_MAPS_MAX };
 
-static const pn_parameter parameters[] = {
-    {"samples", "", "number of depth maps, each from its own point of the light", "Bitmask Soft Shadows, Fig. 9a",
-     PN_INT, 1, 65536, 1024, NULL},
+enum { PRESET, SAMPLES, COUNT };
+
+static const char *const presets[] = {"fast", "good", "exact", NULL};
+
+static const pn_parameter parameters[COUNT] = {
+    [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/average.md",
+                PN_CHOICE, 0, 2, 1, presets},
+    [SAMPLES] = {"samples", "", "number of depth maps, each from its own point of the light",
+                 "Bitmask Soft Shadows, Fig. 9a", PN_INT, 1, 65536, 1024, NULL},
 };
+
+static void preset(int choice, double *values) {
+  static const double samples[] = {64, 1024, 4096};
+  values[PRESET] = choice;
+  values[SAMPLES] = samples[choice];
+}
 
 /* It draws its maps itself, batch by batch; pn_maps_update only finds out whether anything casts. */
 static void want(const double *values, pn_maps_want *out) {
@@ -143,7 +155,7 @@ static pn_result shape(averaging *a) {
 
 static pn_result draw(const pn_visibility_request *r) {
   averaging a = {.request = r, .width = r->receiver->desc.width, .height = r->receiver->desc.height};
-  int samples = (int)r->values[0];
+  int samples = (int)r->values[SAMPLES];
   pn_result result = shape(&a);
   if (result == PN_OK) result = clear_counts(&a);
   start_block(&a);
@@ -174,9 +186,10 @@ const pn_technique_class pn_technique_average = {
               .title = "average of hard shadows",
               .help = "many hard shadow maps from well-spread points of the light: slow, and right with enough of them",
               .parameters = parameters,
-              .parameter_count = 1,
+              .parameter_count = COUNT,
               .self_shadows = 1},
     .want = want,
+    .preset = preset,
     .draw = draw,
     .prepare = prepare,
 };

@@ -1,9 +1,21 @@
 #include "techniques/technique.h"
 
-static const pn_parameter parameters[] = {
-    {"samples", "", "samples along each axis, in the blocker search and in the filter", "Fernando 2005", PN_INT, 1, 64,
-     8, NULL},
+enum { PRESET, SAMPLES, COUNT };
+
+static const char *const presets[] = {"fast", "good", "exact", NULL};
+
+static const pn_parameter parameters[COUNT] = {
+    [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/pcss.md",
+                PN_CHOICE, 0, 2, 1, presets},
+    [SAMPLES] = {"samples", "", "samples along each axis, in the blocker search and in the filter", "Fernando 2005",
+                 PN_INT, 1, 64, 8, NULL},
 };
+
+static void preset(int choice, double *values) {
+  static const double samples[] = {5, 8, 16};
+  values[PRESET] = choice;
+  values[SAMPLES] = samples[choice];
+}
 
 static void want(const double *values, pn_maps_want *out) {
   (void)values;
@@ -16,9 +28,10 @@ const pn_technique_class pn_technique_pcss = {
               .help =
                   "blockers searched over the light's real extent, then one filter of the width their average asks for",
               .parameters = parameters,
-              .parameter_count = 1,
+              .parameter_count = COUNT,
               .forward = 1,
               .self_shadows = 1},
     .want = want,
+    .preset = preset,
     .shader = "techniques/pcss/pcss.glsl",
 };

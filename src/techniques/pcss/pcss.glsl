@@ -48,7 +48,7 @@ float pn_blockers(int light, highp sampler2DArray maps, pn_Receiver r, int n, fl
 }
 
 float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r) {
-  int n = int(pn_parameter(light, 0));
+  int n = int(pn_parameter(light, 1));
   float w_max = pn_window_nearest(light, range, r);
   if (w_max <= r.m.z + r.epsilon_w) return 1.0;
   float w_blockers = pn_blockers(light, maps, r, n, w_max);
