@@ -1,0 +1,383 @@
+/* Searches that merge nothing, against every texel of every map taken one by one on the CPU in double. What float rounding leaves open is counted on both
+ * sides: GL's result must lie between what is surely hidden and what may be. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "light.h"
+#include "stage.h"
+
+enum { PIXELS = 16, LAYERS = 4, GRID_MAX = 32 };
+enum { NO, MAYBE, YES };
+typedef enum { PATCH, QUAD, EXACT } primitive;
+
+/* ---- the maps as GL drew them ---- */
+
+typedef struct {
+  const pn_light_block *block;
+  float *depth[PN_MAPS_MAX * LAYERS];
+  int maps, layers, width, height;
+  bool sun;
+} atlas;
+
+static atlas read_maps(const stage *s) {
+  const pn_maps *maps = &s->light->maps;
+  atlas a = {.block = &maps->block, .maps = (int)maps->block.maps[0], .layers = maps->layers, .width = maps->depth.width,
+             .height = maps->depth.height, .sun = maps->block.extent[2] > 0.5f};
+  for (int i = 0; i < a.maps * a.layers; i++) a.depth[i] = gl_read_depth(maps->depth.id, i, a.width, a.height);
+  return a;
+}
+
+static void free_maps(atlas *a) {
+  for (int i = 0; i < a->maps * a->layers; i++) free(a->depth[i]);
+}
+
+typedef struct { double s, t, w; } place;
+
+/* The sample of a texel; false where there is none. */
+static bool sample_of(const atlas *a, int map, int layer, int x, int y, place *out) {
+  const float *bounds = a->block->map_bounds[map], *scale = a->block->map_depth[map];
+  *out = (place){bounds[0] + (x + 0.5) / bounds[2], bounds[1] + (y + 0.5) / bounds[3], -1e30};
+  if (x < 0 || y < 0 || x >= a->width || y >= a->height) return false;
+  double depth = a->depth[map * a->layers + layer][y * a->width + x];
+  if (depth <= 0 || depth >= 1) return false;
+  out->w = scale[0] + scale[1] * depth;
+  return true;
+}
+
+/* ---- a receiver, and what may be wrong about it ---- */
+
+typedef struct {
+  place m;
+  double n[3], k, reach, half[2], texel[2];
+  double error;                  /* of s and t */
+  double w_most, plane_least, plane_most; /* between which the library's own bounds on errors lie: open */
+} receiver;
+
+/* Positions come from a depth buffer of float over 8 units, so they are good to 2e-6; the library may take them to be worse, up to 1e-5. */
+static receiver receiver_at(const atlas *a, const light_axes *l, vec p, vec n) {
+  vec d = sub(p, l->origin);
+  double z = dot(d, l->z), scale = l->sun ? 1 : 1 / z, map_error = a->block->range[2];
+  receiver r = {.n = {dot(n, l->u), dot(n, l->v), dot(n, l->z)}, .half = {l->half_u, l->half_v},
+                .texel = {1 / a->block->map_bounds[0][2], 1 / a->block->map_bounds[0][3]}};
+  if (l->sun) d = p;
+  r.m = l->sun ? (place){dot(p, l->u), dot(p, l->v), -dot(p, l->z)} : (place){dot(d, l->u) / z, dot(d, l->v) / z, 1 / z};
+  r.k = l->sun ? r.n[2] : dot(n, d);
+  r.reach = l->sun ? 1 : length(d);
+  r.error = 2e-6 * scale * (1 + fabs(r.m.s) + fabs(r.m.t));
+  r.w_most = map_error + scale * scale * 1e-5;
+  r.plane_least = fabs(r.k) * map_error + a->block->range[3] * (fabs(r.n[0]) * r.texel[0] + fabs(r.n[1]) * r.texel[1]);
+  r.plane_most = r.plane_least + scale * 1e-5 * 1.8;
+  return r;
+}
+
+/* Whether a sample hides light: nearer, in front of the tangent plane, and where asked above what a crease may rise. */
+static int hides(const receiver *r, const place *q, bool crease, double cell) {
+  double ds = q->s - r->m.s, dt = q->t - r->m.t, dw = q->w - r->m.w, front = r->n[0] * ds + r->n[1] * dt - r->k * dw;
+  double rise = crease ? fmin(fmax(fabs(ds), fabs(dt)), cell) : 0, lever = fabs(ds) + fabs(dt) + r->reach * fabs(dw);
+  /* Whether the rise comes on top of the error or instead of it is left open. */
+  double least = fmax(r->plane_least, rise), most = r->plane_most + 1e-5 * lever + rise, rounding = 1e-6 * (1 + r->reach);
+  if (dw < -1e-6 || front < least - rounding) return NO;
+  return dw > r->w_most + 1e-6 && front > most + rounding ? YES : MAYBE;
+}
+
+/* ---- the light's samples ---- */
+
+typedef struct {
+  int grid;
+  bool jittered;
+  unsigned char sure[GRID_MAX * GRID_MAX], maybe[GRID_MAX * GRID_MAX];
+} field;
+
+static void sample_place(const field *f, int i, int j, double at[2]) {
+  at[0] = (i + (f->jittered ? (j & 1 ? 0.25 : 0.75) : 0.5)) / f->grid;
+  at[1] = (j + (f->jittered ? (i & 1 ? 0.75 : 0.25) : 0.5)) / f->grid;
+}
+
+static int first_of(const field *f, double x) { return (int)fmin(fmax(floor(x * f->grid) - 1, 0), f->grid); }
+
+typedef struct { double low[2], high[2]; } box;
+
+/* open: by how much an edge may be wrong. */
+static void cover_box(field *f, const box *b, double open, int how) {
+  for (int j = first_of(f, b->low[1]); j < f->grid && (double)j / f->grid <= b->high[1] + open; j++)
+    for (int i = first_of(f, b->low[0]); i < f->grid && (double)i / f->grid <= b->high[0] + open; i++) {
+      double p[2];
+      sample_place(f, i, j, p);
+      bool inside = true, near = true;
+      for (int c = 0; c < 2; c++) {
+        inside = inside && p[c] > b->low[c] + open && p[c] < b->high[c] - open;
+        near = near && p[c] > b->low[c] - open && p[c] < b->high[c] + open;
+      }
+      if (inside && how == YES) f->sure[j * f->grid + i] = 1;
+      if (near) f->maybe[j * f->grid + i] = 1;
+    }
+}
+
+static double edge(const double a[2], const double b[2], const double p[2]) {
+  double x = b[0] - a[0], y = b[1] - a[1];
+  return (x * (p[1] - a[1]) - y * (p[0] - a[0])) / fmax(hypot(x, y), 1e-12);
+}
+
+static void cover_triangle(field *f, const double *a, const double *b, const double *c, double open) {
+  double turn = edge(a, b, c) >= 0 ? 1 : -1;
+  for (int k = first_of(f, fmin(a[1], fmin(b[1], c[1])) - open) * f->grid; k < f->grid * f->grid; k++) {
+    double p[2];
+    sample_place(f, k % f->grid, k / f->grid, p);
+    if (p[1] > fmax(a[1], fmax(b[1], c[1])) + 1.0 / f->grid + open) break;
+    double least = fmin(fmin(turn * edge(a, b, p), turn * edge(b, c, p)), turn * edge(c, a, p));
+    /* Near a sharp corner outside, the lines are all near: counted as open, which is right to do. */
+    if (least > open) f->sure[k] = 1;
+    if (least > -open) f->maybe[k] = 1;
+  }
+}
+
+/* ---- one primitive ---- */
+
+static double on_light(const receiver *r, int axis, double at, double dw) {
+  return 0.5 + 0.5 * (at - (axis ? r->m.t : r->m.s)) / (dw * r->half[axis]);
+}
+
+/* Edges on the light near it are wrong by the error of s, t and of w, which is no larger, over dw. */
+static double open_at(const receiver *r, double dw) {
+  double half = fmin(r->half[0], r->half[1]);
+  return (r->error + 1e-6 * (r->half[0] + r->half[1])) / (dw * half) + 1e-6;
+}
+
+typedef struct { bool edges; primitive primitive; } shape;
+
+static void add_patch(const atlas *a, const receiver *r, int map, int layer, int x, int y, field *f) {
+  place q;
+  if (!sample_of(a, map, layer, x, y, &q)) return;
+  int how = hides(r, &q, true, fmax(r->texel[0], r->texel[1]));
+  double dw = q.w - r->m.w;
+  if (how == NO || dw <= 0) return;
+  box b;
+  for (int c = 0; c < 2; c++) {
+    double at = c ? q.t : q.s;
+    b.low[c] = on_light(r, c, at - 0.5 * r->texel[c], dw);
+    b.high[c] = on_light(r, c, at + 0.5 * r->texel[c], dw);
+  }
+  cover_box(f, &b, open_at(r, dw), how);
+}
+
+/* The mean of 1 / dw over the corners of one side that hide; 0: none does. */
+static double side_inverse(const int hide[4], const double dw[4], int first, int second) {
+  int count = (hide[first] == YES) + (hide[second] == YES);
+  return count ? ((hide[first] == YES ? 1 / dw[first] : 0) + (hide[second] == YES ? 1 / dw[second] : 0)) / count : 0;
+}
+
+/* The rectangle through the middles of a quad's edges, as far as its corners hide: a side without any ends at the middle of the cell. */
+static box quad_box(const receiver *r, const place q[4], const int hide[4], const double dw[4]) {
+  static const int sides[2][2][2] = {{{0, 2}, {1, 3}}, {{0, 1}, {2, 3}}};
+  box b;
+  for (int c = 0; c < 2; c++) {
+    double low = (c ? q[0].t : q[0].s) - (c ? r->m.t : r->m.s), high = (c ? q[3].t : q[3].s) - (c ? r->m.t : r->m.s);
+    double near = side_inverse(hide, dw, sides[c][0][0], sides[c][0][1]), far = side_inverse(hide, dw, sides[c][1][0], sides[c][1][1]);
+    double from = near > 0 ? low * near : 0.5 * (low + high) * far, to = far > 0 ? high * far : 0.5 * (low + high) * near;
+    b.low[c] = 0.5 + 0.5 * fmin(from, to) / r->half[c];
+    b.high[c] = 0.5 + 0.5 * fmax(from, to) / r->half[c];
+  }
+  return b;
+}
+
+/* Everything that the corners could span, for quads of which it is open whether their corners hide. */
+static void maybe_quad(const receiver *r, const place q[4], const int hide[4], const double dw[4], field *f) {
+  box b = {{1e30, 1e30}, {-1e30, -1e30}};
+  double least = 1e30;
+  for (int i = 0; i < 4; i++) {
+    if (hide[i] == NO) continue;
+    least = fmin(least, fmax(dw[i], 1e-7));
+    for (int k = 0; k < 4; k++)
+      for (int c = 0; c < 2; c++) {
+        double at = on_light(r, c, c ? q[k].t : q[k].s, fmax(dw[i], 1e-7));
+        b.low[c] = fmin(b.low[c], at);
+        b.high[c] = fmax(b.high[c], at);
+      }
+  }
+  cover_box(f, &b, open_at(r, least), MAYBE);
+}
+
+static void add_quad(const atlas *a, const receiver *r, int map, int layer, int x, int y, const shape *how, field *f) {
+  place q[4];
+  int hide[4], count[3] = {0};
+  double dw[4], cell = fmax(r->texel[0], r->texel[1]), least = 1e30;
+  for (int i = 0; i < 4; i++) {
+    bool there = sample_of(a, map, layer, x + (i & 1), y + (i >> 1), &q[i]);
+    dw[i] = q[i].w - r->m.w;
+    hide[i] = there ? hides(r, &q[i], false, 0) : NO;
+    count[hide[i]]++;
+  }
+  if (count[NO] == 4 || (count[NO] && !how->edges)) return;
+  bool whole = count[YES] == 4, open = false;
+  for (int i = 0; i < 4 && count[NO]; i++) /* single corners must rise above a crease */
+    hide[i] = hide[i] == NO ? NO : hides(r, &q[i], true, cell);
+  for (int i = 0; i < 4; i++) open = open || hide[i] == MAYBE;
+  if (hide[0] + hide[1] + hide[2] + hide[3] == NO) return;
+  if (open) {
+    maybe_quad(r, q, hide, dw, f);
+    return;
+  }
+  for (int i = 0; i < 4; i++)
+    if (hide[i] == YES) least = fmin(least, dw[i]);
+  if (!whole || how->primitive == QUAD) {
+    box b = quad_box(r, q, hide, dw);
+    cover_box(f, &b, open_at(r, least), YES);
+    return;
+  }
+  double p[4][2];
+  for (int i = 0; i < 4; i++)
+    for (int c = 0; c < 2; c++) p[i][c] = on_light(r, c, c ? q[i].t : q[i].s, dw[i]);
+  cover_triangle(f, p[0], p[1], p[2], open_at(r, least));
+  cover_triangle(f, p[1], p[3], p[2], open_at(r, least));
+}
+
+static void cover_all(const atlas *a, const receiver *r, const shape *how, field *f) {
+  for (int map = 0; map < a->maps; map++)
+    for (int layer = 0; layer < a->layers; layer++)
+      for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++) {
+          if (how->primitive == PATCH)
+            add_patch(a, r, map, layer, x, y, f);
+          else
+            add_quad(a, r, map, layer, x, y, how, f);
+        }
+}
+
+/* ---- comparing ---- */
+
+typedef struct { int compared, hidden, open, outside; double worst; } tally;
+
+/* The point that the stored depth says, on the pixel's line through the exact one. */
+static vec stored_point(const view *v, int pixel) {
+  const camera *k = &v->camera;
+  vec p = view_point(v, pixel % PIXELS, pixel / PIXELS), forward = unit(sub(k->target, k->eye));
+  return add(p, mul(k->near + v->depths[pixel] * (k->far - k->near) - dot(sub(p, k->eye), forward), forward));
+}
+
+/* Samples above the horizon that are hidden, over all above. */
+static void compare_pixel(const receiver *r, const field *f, double visibility, tally *t) {
+  int total = 0, sure = 0, maybe = 0;
+  for (int k = 0; k < f->grid * f->grid; k++) {
+    double p[2];
+    sample_place(f, k % f->grid, k / f->grid, p);
+    double u = r->n[0] * r->half[0], v = r->n[1] * r->half[1], h = (2 * p[0] - 1) * u + (2 * p[1] - 1) * v - r->k;
+    if (fabs(h) < 1e-5 * (fabs(u) + fabs(v) + fabs(r->k) + 1)) return; /* open which samples there are */
+    if (h < 0) continue;
+    total++;
+    sure += f->sure[k];
+    maybe += f->maybe[k];
+  }
+  double hidden = total ? (1 - visibility) * total : 0;
+  t->compared++;
+  t->hidden += sure > 0;
+  t->open += maybe - sure;
+  if (total == 0 ? visibility == 1 : hidden > sure - 0.01 && hidden < maybe + 0.01) return;
+  t->outside++;
+  t->worst = fmax(t->worst, fmax(sure - hidden, hidden - maybe) / fmax(total, 1));
+}
+
+static void make_scene(uint64_t *seed, soup *casters, soup *seen) {
+  vec tilt = v3(2, random_in(seed, -0.6, 0.6), 0);
+  soup_patch(seen, v3(0, 0, 0), tilt, v3(0, 0, 2));
+  if (random_bits(seed) & 1) soup_patch(casters, v3(0, 0, 0), tilt, v3(0, 0, 2));
+  int count = 1 + (int)random_in(seed, 0, 5);
+  for (int i = 0; i < count; i++) {
+    vec a = random_direction(seed), b = unit(cross(a, random_direction(seed))), centre = add(v3(0, 0.8, 0), random_point(seed, 0.5));
+    for (int k = 0; k < 2; k++) {
+      soup *s = k ? casters : seen;
+      if (i & 1)
+        soup_block(s, centre, mul(0.3, a), mul(0.2, b), mul(0.15, cross(a, b)));
+      else
+        soup_patch(s, centre, mul(0.5, a), mul(0.2, b));
+    }
+  }
+}
+
+static pn_light_desc pick_light(uint64_t *seed, int round) {
+  static const int maps[] = {1, 2, 3, 9, 16, 24};
+  vec from = unit(v3(random_in(seed, -0.4, 0.4), 1, random_in(seed, -0.4, 0.4)));
+  double size = exp2(random_in(seed, -4, 0.5));
+  int map = maps[(int)random_in(seed, 0, 6)];
+  pn_light_desc light = round & 1 ? sun_along(mul(-1, from), fmin(size, 1), 0.4 * fmin(size, 1), map)
+                                  : light_at(mul(round % 4 == 2 ? 1.7 : 3, from), mul(-1, from), size, 0.6 * size, map);
+  if (round % 3 == 0) light.map_height = maps[(int)random_in(seed, 0, 6)];
+  return light;
+}
+
+/* s: kept from round to round, since compiling takes longer than looking. */
+static void look(stage *s, const char *spec, const shape *how, int code, int round, tally *t) {
+  uint64_t seed = 500 + (uint64_t)round;
+  soup casters = {0}, seen = {0};
+  make_scene(&seed, &casters, &seen);
+  camera k = {.width = PIXELS, .height = PIXELS, .eye = v3(0.8, 3, 1.5), .target = v3(0, 0.3, 0), .up = v3(0, 1, 0), .orthographic = true,
+              .half_height = 1.3, .near = 0.5, .far = 8};
+  view v;
+  view_draw(&v, &k, &seen);
+  pn_casters_destroy(&s->casters);
+  assert_ok(pn_casters_create(s->context, &s->casters));
+  stage_cast(s, &casters);
+  stage_receive(s, &v, true);
+  pn_light_desc light = pick_light(&seed, round);
+  light_axes axes = axes_of(&light);
+  float *visibility = stage_visibility(s, &light, spec);
+  pn_maps_info info;
+  assert_ok(pn_light_maps(s->light, &info));
+  atlas a = read_maps(s);
+  int outside = t->outside;
+  for (int i = 0; i < PIXELS * PIXELS && !info.empty && a.maps == 1; i++) {
+    if (v.shown[i] < 0) continue;
+    vec p = stored_point(&v, i);
+    if (!axes.sun && dot(sub(p, axes.origin), axes.z) < 0.05) continue;
+    receiver r = receiver_at(&a, &axes, p, view_normal(&v, i % PIXELS, i / PIXELS));
+    field f = {.grid = code == 17 ? 16 : code, .jittered = code == 17};
+    cover_all(&a, &r, how, &f);
+    compare_pixel(&r, &f, visibility[i], t);
+  }
+  if (t->outside > outside) print_message("%s, round %d: %d of %d pixels outside, by up to %g\n", spec, round, t->outside - outside, PIXELS * PIXELS, t->worst);
+  free_maps(&a);
+  free(visibility);
+  view_free(&v);
+  soup_free(&casters);
+  soup_free(&seen);
+}
+
+static void check(const char *primitive_name, primitive p, bool edges, const char *samples, int code, const char *maps, int rounds) {
+  char spec[128];
+  tally t = {0};
+  shape how = {edges, p};
+  snprintf(spec, sizeof spec, "bitmask:merge=0,hierarchy=none,primitive=%s,edges=%s,samples=%s,maps=%s", primitive_name, edges ? "on" : "off", samples, maps);
+  stage s;
+  stage_open(&s);
+  for (int round = 0; round < rounds; round++) look(&s, spec, &how, code, round, &t);
+  stage_close(&s);
+  print_message("%s: %d pixels, %d in shadow, %.3f samples open a pixel, %d outside\n", spec, t.compared, t.hidden, (double)t.open / t.compared, t.outside);
+  assert_true(t.compared > 64 * rounds && t.hidden > t.compared / 20);
+  assert_true(t.open < 0.02 * code * code * t.compared); /* else the comparison says little */
+  assert_int_equal(t.outside, 0);
+}
+
+static void test_patches(void **state) {
+  (void)state;
+  check("patch", PATCH, true, "16j", 17, "front", 10);
+  check("patch", PATCH, true, "8", 8, "two-sided", 10);
+  check("patch", PATCH, true, "32", 32, "layers,layers=3", 6);
+}
+
+static void test_quads(void **state) {
+  (void)state;
+  check("quad", QUAD, true, "16j", 17, "two-sided", 10);
+  check("quad", QUAD, false, "16", 16, "front", 10);
+  check("quad", QUAD, true, "32", 32, "layers,layers=4", 6);
+}
+
+static void test_exact_quads(void **state) {
+  (void)state;
+  check("quad-exact", EXACT, true, "16j", 17, "front", 10);
+  check("quad-exact", EXACT, true, "32", 32, "two-sided", 6);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_patches), cmocka_unit_test(test_quads), cmocka_unit_test(test_exact_quads)};
+  return GL_RUN("searches against every texel", tests);
+}
