@@ -66,8 +66,7 @@ static GLuint shadows_draw(shadows *s, GLuint depth, const float *box, const flo
 }
 /* end */
 
-/* ---- matrices, column-major
- * ----------------------------------------------------------------------------------------------- */
+/* ---- matrices, column-major -------------------------------------------------------------------------------------- */
 
 static void multiply(float out[16], const float a[16], const float b[16]) {
   for (int i = 0; i < 16; i++) {
@@ -100,8 +99,7 @@ static void box_at(float out[16], float angle) {
   memcpy(out, m, sizeof m);
 }
 
-/* ---- the renderer
- * ---------------------------------------------------------------------------------------------------------- */
+/* ---- the renderer ------------------------------------------------------------------------------------------------ */
 
 static const char *const vertex_text =
     "#version 330 core\n"
@@ -228,8 +226,7 @@ static void draw_scene(const renderer *r, GLuint framebuffer, GLuint visibility,
   draw_part(r, still, grey, BOX_VERTICES, FLOOR_VERTICES);
 }
 
-/* ---- the window
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- the window -------------------------------------------------------------------------------------------------- */
 
 static int frame(renderer *r, shadows *s, float angle) {
   float box[16], view[16], projection[16], clip[16];
