@@ -10,6 +10,9 @@ void interrupt_install(void);
 void interrupt_watch_file(const char *path);
 void interrupt_forget_file(const char *path);
 
+/* A folder to remove when interrupted, if nothing is in it by then; NULL: none. */
+void interrupt_watch_folder(const char *path);
+
 /* The import's process, killed when interrupted; 0: none. */
 void interrupt_watch_child(pid_t child);
 

@@ -29,6 +29,54 @@ static char *temporary_name(const char *target) {
   return name;
 }
 
+/* The absolute name of a folder, of which the last parts need not exist. */
+static char *resolve_folder(const char *folder) {
+  char *whole = realpath(folder, NULL);
+  if (whole || errno == ENOMEM) return whole;
+  size_t length = strlen(folder);
+  while (length > 1 && folder[length - 1] == '/') length--;
+  size_t stem = length;
+  while (stem && folder[stem - 1] != '/') stem--;
+  char *parent = stem ? strndup(folder, stem) : strdup("."), *above = NULL;
+  if (parent && stem < length) above = resolve_folder(parent);
+  if (above && asprintf(&whole, "%s/%.*s", above, (int)(length - stem), folder + stem) < 0) whole = NULL;
+  free(parent);
+  free(above);
+  return whole;
+}
+
+/* What a symbolic link says, seen from where the link is; NULL: path is no link. */
+static char *read_link(const char *path) {
+  char text[4096], *whole = NULL;
+  ssize_t length = readlink(path, text, sizeof text - 1);
+  if (length <= 0) return NULL;
+  text[length] = 0;
+  const char *slash = strrchr(path, '/');
+  int folder = slash && *text != '/' ? (int)(slash - path) + 1 : 0;
+  return asprintf(&whole, "%.*s%s", folder, path, text) < 0 ? NULL : whole;
+}
+
+char *output_target(const char *path) {
+  enum { LINKS_MAX = 40 };
+  char *at = strdup(path), *whole = NULL;
+  for (int i = 0; at; i++) {
+    char *next = read_link(at);
+    if (!next) break;
+    free(at);
+    at = i < LINKS_MAX ? next : NULL;
+    if (!at) free(next);
+    if (!at) errno = ELOOP;
+  }
+  if (!at) return NULL;
+  char *slash = strrchr(at, '/'), *folder = slash ? strndup(at, (size_t)(slash - at) + 1) : strdup(".");
+  char *above = folder ? resolve_folder(folder) : NULL;
+  if (above && asprintf(&whole, "%s/%s", above, slash ? slash + 1 : at) < 0) whole = NULL;
+  free(folder);
+  free(above);
+  free(at);
+  return whole;
+}
+
 static int open_temporary(struct output *output) {
   int fd = mkstemp(output->temporary);
   if (fd < 0) return -1;
@@ -59,10 +107,9 @@ int output_open(struct output *output, const char *path) {
     output->file = fopen(path, "wb");
     if (output->file) return STATUS_OK;
   } else {
-    output->target = exists ? realpath(path, NULL) : strdup(path);
+    output->target = output_target(path);
     output->temporary = output->target ? temporary_name(output->target) : NULL;
-    if (!output->temporary) errno = ENOMEM;
-    else if (open_temporary(output) == 0) return STATUS_OK;
+    if (output->temporary && open_temporary(output) == 0) return STATUS_OK;
   }
   int status = work_error("cannot write %s: %s", path, strerror(errno));
   forget(output);

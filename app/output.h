@@ -11,6 +11,10 @@ struct output {
   char *temporary; /* NULL: a device or pipe, written directly */
 };
 
+/* Where path leads with its folder's name made absolute and symbolic links followed, whether or not the file, or the
+ * folder, exists yet; malloc'ed. NULL: out of memory, or links without end. */
+char *output_target(const char *path);
+
 /* Opens path for writing. "-" is standard output. On failure one line was printed and the exit status is returned. */
 int output_open(struct output *output, const char *path);
 

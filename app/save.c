@@ -7,17 +7,30 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "interrupt.h"
 #include "label.h"
 #include "message.h"
 
+static const char *made_folder; /* NULL: it was there before */
+
 int save_check(const char *folder) {
   struct stat info;
-  if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+  if (mkdir(folder, 0777) == 0) {
+    made_folder = folder;
+    interrupt_watch_folder(folder);
+  } else if (errno != EEXIST) {
     return work_error("cannot make the directory %s: %s", folder, strerror(errno));
+  }
   if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))
     return work_error("cannot write into %s: it is not a directory", folder);
   if (access(folder, W_OK | X_OK) != 0) return work_error("cannot write into %s: %s", folder, strerror(errno));
   return STATUS_OK;
+}
+
+void save_abandon(void) {
+  if (made_folder) rmdir(made_folder); /* fails where something is in it */
+  made_folder = NULL;
+  interrupt_watch_folder(NULL);
 }
 
 int save_planes(const struct save *save, const char *name, const struct exr_plane *planes, int plane_count) {

@@ -17,6 +17,9 @@ struct save {
 /* Makes the folder where it is missing, and checks that it can be written. Exit status. */
 int save_check(const char *folder);
 
+/* After a failure: removes the folder that save_check made, if nothing is in it. */
+void save_abandon(void);
+
 int save_planes(const struct save *save, const char *name, const struct exr_plane *planes, int plane_count);
 int save_vectors(const struct save *save, const char *name, const float *vectors); /* X, Y, Z */
 int save_scalars(const struct save *save, const char *name, const float *values);  /* Y */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "claims.h"
 #include "commands/commands.h"
 #include "host/measure.h"
 #include "json_file.h"
@@ -197,7 +198,10 @@ static int run_bench(struct bench *b) {
 int command_bench(const struct options *o) {
   struct bench b = {.options = o, .people = o->json && strcmp(o->json, "-") == 0 ? stderr : stdout};
   struct scene *scene = NULL;
-  int status = o->json ? output_check(o->json) : STATUS_OK;
+  struct claims claims = {NULL, 0};
+  int status = claim_options(&claims, o);
+  claims_free(&claims);
+  if (!status && o->json) status = output_check(o->json);
   if (!status) status = options_scene(o, o->positional_count ? o->positionals[0] : default_scene, &scene);
   if (!status) status = host_open(scene, o->device, &b.host);
   if (!status) status = run_bench(&b);

@@ -1,21 +1,19 @@
 /* penumbra compare: several techniques against the reference. */
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include "claims.h"
 #include "commands/commands.h"
 #include "commands/truth.h"
 #include "host/measure.h"
 #include "host/shade.h"
 #include "image.h"
 #include "json_file.h"
-#include "label.h"
 #include "message.h"
 #include "output.h"
 #include "report/report.h"
+#include "save.h"
 
 /* One technique's share of the work. */
 struct entry {
@@ -49,23 +47,38 @@ static size_t pixel_count(const struct comparison *c) { return (size_t)c->view->
 
 /* ---- before the work: what can be wrong with the request --------------------------------------------------------- */
 
-static int check_save_dir(const char *path) {
-  struct stat info;
-  if (mkdir(path, 0777) != 0 && errno != EEXIST)
-    return work_error("cannot make the directory %s: %s", path, strerror(errno));
-  if (stat(path, &info) != 0 || !S_ISDIR(info.st_mode))
-    return work_error("cannot write into %s: it is not a directory", path);
-  if (access(path, W_OK | X_OK) != 0) return work_error("cannot write into %s: %s", path, strerror(errno));
-  return STATUS_OK;
+/* "NN-LABEL.search.exr"; malloc'ed; NULL: out of memory. */
+static char *search_name(const struct entry *e) {
+  int stem = (int)(strlen(e->file) - strlen(".exr"));
+  char *name = malloc((size_t)stem + sizeof ".search.exr");
+  if (name) sprintf(name, "%.*s.search.exr", stem, e->file);
+  return name;
 }
 
-static int check_outputs(const struct options *o) {
+static int claim_files(const struct comparison *c) {
+  struct claims claims = {NULL, 0};
+  const char *folder = c->options->save_dir;
+  int status = claim_options(&claims, c->options);
+  if (!status && folder) status = claim_saved(&claims, folder, "reference.exr");
+  for (int i = 0; i < c->count && folder && !status; i++) {
+    char *search = search_name(&c->entries[i]);
+    status = search ? claim_saved(&claims, folder, c->entries[i].file) : memory_error();
+    if (!status) status = claim_saved(&claims, folder, search);
+    free(search);
+  }
+  claims_free(&claims);
+  return status;
+}
+
+static int check_outputs(const struct comparison *c) {
+  const struct options *o = c->options;
   if (o->output && image_kind_of(o->output) != IMAGE_PNG)
     return input_error("--output %s: the comparison sheet is a .png file", o->output);
-  int status = o->output ? output_check(o->output) : STATUS_OK;
+  int status = claim_files(c);
+  if (!status && o->output) status = output_check(o->output);
   if (!status && o->html) status = output_check(o->html);
   if (!status && o->json) status = output_check(o->json);
-  if (!status && o->save_dir) status = check_save_dir(o->save_dir);
+  if (!status && o->save_dir) status = save_check(o->save_dir);
   return status;
 }
 
@@ -84,14 +97,6 @@ static int count_specs(const struct options *o) {
   return count;
 }
 
-static char *buffer_name(int number, const char *spec) {
-  char *label = file_label(spec), *name = NULL;
-  size_t size = label ? strlen(label) + 24 : 0;
-  if (label && (name = malloc(size))) snprintf(name, size, "%02d-%.200s.exr", number, label);
-  free(label);
-  return name;
-}
-
 static int make_entries(struct comparison *c) {
   c->count = count_specs(c->options);
   c->entries = calloc((size_t)c->count + 1, sizeof *c->entries);
@@ -101,7 +106,7 @@ static int make_entries(struct comparison *c) {
   for (int i = 0; i < c->count; i++) {
     struct entry *e = &c->entries[i];
     e->spec = spec_at(c->options, i);
-    e->file = buffer_name(i + 1, e->spec);
+    e->file = save_name(i, e->spec);
     e->described = cJSON_CreateObject();
     if (!e->file || !e->described) return memory_error();
     add_technique(e->described, e->spec);
@@ -262,48 +267,26 @@ static void describe(struct comparison *c) {
 /* With JSON on standard output, people's lines make room. */
 static FILE *people(const struct options *o) { return o->json && strcmp(o->json, "-") == 0 ? stderr : stdout; }
 
-static int save_planes(const struct comparison *c, const char *name, const struct exr_plane *planes, int plane_count) {
-  size_t size = strlen(c->options->save_dir) + strlen(name) + 2;
-  char *path = malloc(size);
-  if (!path) return memory_error();
-  snprintf(path, size, "%s/%s", c->options->save_dir, name);
-  int status = exr_write(path, c->view->width, c->view->height, planes, plane_count);
-  if (!status) fprintf(people(c->options), "%s\n", path);
-  free(path);
-  return status;
-}
-
-static int save_vectors(const struct comparison *c, const char *name, const float *vectors) {
-  const struct exr_plane planes[3] = {{"X", vectors, 3}, {"Y", vectors + 1, 3}, {"Z", vectors + 2, 3}};
-  return save_planes(c, name, planes, 3);
-}
-
-static int save_scalars(const struct comparison *c, const char *name, const float *values) {
-  const struct exr_plane plane = {"Y", values, 1};
-  return save_planes(c, name, &plane, 1);
-}
-
-static int save_search(const struct comparison *c, const struct entry *e) {
-  const struct exr_plane planes[4] = {
-      {"class", e->search, 4}, {"primitives", e->search + 2, 4}, {"visited", e->search + 1, 4}, {"window", e->search + 3, 4}};
-  size_t stem = strlen(e->file) - strlen(".exr");
-  char *name = malloc(stem + sizeof ".search.exr");
-  if (!name) return memory_error();
-  sprintf(name, "%.*s.search.exr", (int)stem, e->file);
-  int status = save_planes(c, name, planes, 4);
+static int save_search(const struct save *save, const struct entry *e) {
+  const struct exr_plane planes[4] = {{"class", e->search, 4},
+                                      {"primitives", e->search + 2, 4},
+                                      {"visited", e->search + 1, 4},
+                                      {"window", e->search + 3, 4}};
+  char *name = search_name(e);
+  int status = name ? save_planes(save, name, planes, 4) : memory_error();
   free(name);
   return status;
 }
 
 static int save_buffers(const struct comparison *c) {
-  int status = save_vectors(c, "position.exr", c->view->position);
-  if (!status) status = save_vectors(c, "normal.exr", c->view->normal);
-  if (!status) status = save_scalars(c, "reference.exr", c->truth.visibility);
+  const struct save save = {c->options->save_dir, people(c->options), c->view->width, c->view->height};
+  int status = save_view(&save, c->view);
+  if (!status) status = save_scalars(&save, "reference.exr", c->truth.visibility);
   for (int i = 0; i < c->count && !status; i++) {
-    status = save_scalars(c, c->entries[i].file, c->entries[i].visibility);
-    if (!status && c->techniques[i].searched) status = save_search(c, &c->entries[i]);
+    status = save_scalars(&save, c->entries[i].file, c->entries[i].visibility);
+    if (!status && c->techniques[i].searched) status = save_search(&save, &c->entries[i]);
   }
-  return status ? status : save_scalars(c, "mask.exr", c->view->mask);
+  return status;
 }
 
 static int report_problem(enum report_status status, const char *option, const char *path) {
@@ -363,9 +346,9 @@ static int write_outputs(struct comparison *c) {
 
 static int compare(struct comparison *c) {
   const struct options *o = c->options;
-  int status = check_outputs(o);
+  int status = make_entries(c);
+  if (!status) status = check_outputs(c);
   if (!status) status = options_scene(o, NULL, &c->scene);
-  if (!status) status = make_entries(c);
   if (!status) status = host_open(c->scene, o->device, &c->host);
   if (!status) status = view_read(c->host.gbuffer, c->scene, &c->view);
   if (!status) status = mark_pixels(c);
@@ -405,6 +388,7 @@ static void free_comparison(struct comparison *c) {
 int command_compare(const struct options *options) {
   struct comparison c = {.options = options};
   int status = compare(&c);
+  if (status) save_abandon();
   free_comparison(&c);
   return status;
 }

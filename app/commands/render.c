@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "claims.h"
 #include "commands/commands.h"
 #include "host/measure.h"
 #include "host/shade.h"
@@ -11,7 +12,6 @@
 #include "output.h"
 #include "save.h"
 
-/* Until measurement finds the technique and preset that serve everyday use best. */
 static const char default_technique[] = PN_TECHNIQUE_DEFAULT;
 
 struct picture {
@@ -20,15 +20,31 @@ struct picture {
   pn_light *light;
 };
 
+static int claim_buffers(const struct options *o, struct claims *claims) {
+  int status = STATUS_OK;
+  for (int i = 0; o->save_dir && !status && (i < o->technique_count || i == 0); i++) {
+    char *name = save_name(i, o->technique_count ? o->techniques[i] : default_technique);
+    status = name ? claim_saved(claims, o->save_dir, name) : memory_error();
+    free(name);
+  }
+  return status;
+}
+
+static int claim_picture(const struct picture *picture, struct claims *claims) {
+  char what[120];
+  snprintf(what, sizeof what, "the picture of %.80s", picture->spec);
+  return claim_write(claims, what, picture->path);
+}
+
 /* A fixed order of work: what can be wrong with the outputs is found before anything is drawn. */
-static int name_pictures(const struct options *o, const struct scene *scene, struct picture *pictures, int count) {
-  if (o->output && count > 1)
-    return input_error("--output names one file, but there are %d techniques: leave it out", count);
+static int name_pictures(const struct options *o, const struct scene *scene, struct claims *claims,
+                         struct picture *pictures, int count) {
   for (int i = 0; i < count; i++) {
     pictures[i].spec = o->technique_count ? o->techniques[i] : default_technique;
     pictures[i].path = o->output ? strdup(o->output) : picture_name(scene->name, pictures[i].spec, ".png");
     if (!pictures[i].path) return memory_error();
-    int status = output_check(pictures[i].path);
+    int status = o->output ? STATUS_OK : claim_picture(&pictures[i], claims);
+    if (!status) status = output_check(pictures[i].path);
     if (status) return status;
   }
   int status = o->json ? output_check(o->json) : STATUS_OK;
@@ -133,17 +149,29 @@ static int draw_and_write(const struct options *o, struct host *host, struct pic
   return status;
 }
 
-int command_render(const struct options *o) {
-  int count = o->technique_count ? o->technique_count : 1;
-  struct picture *pictures = calloc((size_t)count, sizeof *pictures);
+static int render(const struct options *o, struct claims *claims, struct picture *pictures, int count) {
+  if (o->output && count > 1)
+    return input_error("--output names one file, but there are %d techniques: leave it out", count);
   struct scene *scene = NULL;
   struct host host = {0};
-  int status = pictures ? options_scene(o, NULL, &scene) : memory_error();
-  if (!status) status = name_pictures(o, scene, pictures, count);
+  int status = claim_options(claims, o);
+  if (!status) status = claim_buffers(o, claims);
+  if (!status) status = options_scene(o, NULL, &scene);
+  if (!status) status = name_pictures(o, scene, claims, pictures, count);
   if (!status) status = host_open(scene, o->device, &host);
   if (!status) status = draw_and_write(o, &host, pictures, count);
   host_close(&host);
   scene_free(&scene);
+  return status;
+}
+
+int command_render(const struct options *o) {
+  int count = o->technique_count ? o->technique_count : 1;
+  struct picture *pictures = calloc((size_t)count, sizeof *pictures);
+  struct claims claims = {NULL, 0};
+  int status = pictures ? render(o, &claims, pictures, count) : memory_error();
+  if (status) save_abandon();
+  claims_free(&claims);
   for (int i = 0; pictures && i < count; i++) free(pictures[i].path);
   free(pictures);
   return status;

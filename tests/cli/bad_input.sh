@@ -116,9 +116,30 @@ rejected 1 'cannot write folder.png: .*directory' render $s -o folder.png
 run 1 render $s -o x.png --json /dev/full
 grep -q 'cannot write /dev/full: No space' err && [ -s x.png ] || fail "full disk behind --json: $(cat err)"
 
+# outputs that would destroy an input or one another
+cp ok.obj ok.png
+ln -s ok.obj model.link
+ln ok.obj hard.link
+ln -s new.png later.png
+echo '{"scene":{"light":{"size":[1,1]}}}' >good.json
+rejected 2 '--output would overwrite the model' render ok.png -o ./ok.png
+rejected 2 '--json would overwrite the model' render model.link --json ok.obj
+rejected 2 '--json would overwrite the model' bench ok.obj --json hard.link
+rejected 2 '--html would overwrite the model' compare ok.obj --html model.link
+rejected 2 '--json would overwrite the file of --setup' render $s --setup good.json --json good.json
+rejected 2 '--json would overwrite --output' render $s -o new.png --json "$PWD/folder.png/../new.png"
+rejected 2 '--json would overwrite --output' render $s -o new.png --json later.png
+rejected 2 '--html would overwrite --output' compare $s -o new.png --html new.png
+rejected 2 'a buffer of --save-dir would overwrite --output' render $s -o none/mask.exr --save-dir none
+rejected 2 'a buffer of --save-dir would overwrite --json' compare $s --json none/reference.exr --save-dir none
+rejected 2 'the picture of hard would overwrite the picture of hard' render $s -t hard -t hard
+rejected 2 'the picture of hard would overwrite --json' render $s -t hard -t pcss --json square-hard.png
+cmp -s ok.obj ok.png || fail "the model was touched"
+
 # no GL device
 export LIBGL_DRIVERS_PATH=/none
 rejected 1 'no OpenGL 3.3 device' render $s
+rejected 1 'no OpenGL 3.3 device' render $s --save-dir made # nor does the folder stay
 rejected 1 'no software OpenGL 3.3' render $s --device software
 export __EGL_VENDOR_LIBRARY_FILENAMES=/none
 rejected 1 'no OpenGL 3.3 device' render $s

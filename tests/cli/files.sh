@@ -32,6 +32,9 @@ echo before >real/y.png
 ln -s real/y.png y.png
 run 0 render $small -o y.png
 [ -L y.png ] && head -c 8 real/y.png | grep -q PNG || fail "a link was replaced instead of followed"
+ln -s real/z.png z.png
+run 0 render $small -o z.png
+[ -L z.png ] && head -c 8 real/z.png | grep -q PNG || fail "a link to a new file was replaced instead of followed"
 
 # Standard output that cannot be written.
 status=0
