@@ -13,6 +13,11 @@
 // penumbra), blocks visited, primitives covered, texels in the window.
 vec4 pn_search_done = vec4(0.0);
 
+// Turns of the descent, over all layers and maps of this receiver. Software GL ends a shader's loops after 65535
+// turns in all, so past PN_TURNS blocks are looked at no closer: what is left costs a few turns for each level.
+#define PN_TURNS 50000
+int pn_search_turns = 0;
+
 struct pn_Window {
   ivec2 low, high; // texels, both included
   vec2 w;          // largest and smallest there
@@ -66,7 +71,6 @@ void pn_texel_patch(int light, highp sampler2DArray maps, pn_Receiver r, int map
   pn_search_done.z += 1.0;
 }
 
-#if PN_PRIMITIVE != PN_PATCH
 // A quad, or a block of quads taken as one, seen from the receiver: its corners in the order (0, 0), (1, 0), (0, 1),
 // (1, 1), and the rectangle through the middles of its edges (section 4). Corners keep their own w, so that
 // neighbours meet.
@@ -77,11 +81,13 @@ struct pn_Quad {
   bool some;      // with PN_EDGES: those that do have their parts of the rectangle
 };
 
-// The middle of two ends along one axis, as far as their corners hide: half a cell where one side has none.
-vec2 pn_edge(float scale, float near, float far, vec2 weight, vec2 inverse) {
+#if PN_PRIMITIVE != PN_PATCH
+// Where the rectangle ends along one axis: at near and far, at the distances of the corners there, as far as they
+// hide: share 1 is the corner, 0 the middle.
+vec2 pn_edge(float scale, float near, float far, vec2 share, vec2 inverse) {
   float middle = 0.5 * (near + far);
-  vec2 at = 0.5 + scale * vec2(weight.x > 0.0 ? near * inverse.x : middle * inverse.y,
-                               weight.y > 0.0 ? far * inverse.y : middle * inverse.x);
+  vec2 at = 0.5 + scale * vec2(mix(middle, near, share.x) * (share.x > 0.0 ? inverse.x : inverse.y),
+                               mix(middle, far, share.y) * (share.y > 0.0 ? inverse.y : inverse.x));
   return vec2(min(at.x, at.y), max(at.x, at.y));
 }
 
@@ -111,10 +117,14 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, in
   vec2 scale = 0.5 / pn_extent(light);
   q.x = 0.5 + scale.x * s * inverse;
   q.y = 0.5 + scale.y * t * inverse;
-  vec4 hidden = hide * inverse;
+  // Columns and rows that hide, and the mean w of their corners. The rectangle has as many quarters of the cell as
+  // corners hide: where both columns do, a row with one corner has half of its share.
+  vec4 hidden = hide * dw;
   vec2 columns = hide.xy + hide.zw, rows = hide.xz + hide.yw;
-  vec2 along_x = pn_edge(scale.x, low.x, high.x, columns, (hidden.xy + hidden.zw) / max(columns, vec2(1.0)));
-  vec2 along_y = pn_edge(scale.y, low.y, high.y, rows, (hidden.xz + hidden.yw) / max(rows, vec2(1.0)));
+  vec2 column_share = min(columns, vec2(1.0));
+  vec2 row_share = rows / max(column_share.x + column_share.y, 1.0);
+  vec2 along_x = pn_edge(scale.x, low.x, high.x, column_share, columns / max(hidden.xy + hidden.zw, vec2(1e-30)));
+  vec2 along_y = pn_edge(scale.y, low.y, high.y, row_share, rows / max(hidden.xz + hidden.yw, vec2(1e-30)));
   q.low = vec2(along_x.x, along_y.x);
   q.high = vec2(along_x.y, along_y.y);
   return q;
@@ -295,8 +305,8 @@ struct pn_Rectangle { vec2 low, high; }; // on the light, 0 to 1
 
 // One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Only one field is made:
 // of the rectangle that the block becomes, or, when it does not become one, of what it could hide at most.
-int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, ivec2 node, int level,
-                   float merge, inout pn_Cover c) {
+int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer,
+                   ivec2 node, int level, float merge, inout pn_Cover c, out pn_Quad quad) {
   vec2 dw = texelFetch(range, ivec3(node, map * pn_map_layers(light) + layer), level).rg - r.m.z; // largest, smallest
   vec2 extent = pn_extent(light);
   vec2 low = pn_block_st(light, map, node << level) - r.m.xy, high = pn_block_st(light, map, (node + 1) << level) - r.m.xy;
@@ -322,13 +332,13 @@ int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray ra
   bool one = dw.y > r.epsilon_w && front.x > rise && max(moved.x, moved.y) <= merge;
   // A block that is itself no larger on the light than what may be moved is looked at no closer: its corners stand
   // for it, as a texel's do.
-  vec2 size = scale * (high - low) / dw.x;
-  bool leaf = level == 0 || PN_PRIMITIVE != PN_PATCH && max(size.x, size.y) <= merge;
+  vec2 size = scale * (high - low) / dw_least;
+  bool leaf = level == 0 || pn_search_turns >= PN_TURNS || PN_PRIMITIVE != PN_PATCH && max(size.x, size.y) <= merge;
   pn_Rectangle most = pn_Rectangle(min(a0, a1), max(b0, b1));
 #if PN_PRIMITIVE == PN_PATCH
   pn_Rectangle as_one = pn_Rectangle(0.5 * (a0 + a1), 0.5 * (b0 + b1));
 #else
-  pn_Quad quad = pn_quad(light, maps, r, map, layer, node << level, (node + 1) << level);
+  quad = pn_quad(light, maps, r, map, layer, node << level, (node + 1) << level);
   pn_Rectangle as_one = pn_Rectangle(quad.low, quad.high);
 #if PN_PRIMITIVE == PN_QUAD
   one = one || leaf && quad.some;
@@ -345,15 +355,17 @@ int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray ra
   return done || leaf ? PN_SKIP : PN_DOWN;
 }
 
-// A step of the walk: down to the first child, or past all last children and then aside. False at the end.
+// A step of the walk: down to the first child, or past all last children and then aside. False at the end. Blocks end
+// with as many last children as their coordinates share ones at the low end; counted without a loop, whose turns
+// would count too.
 bool pn_walk(inout ivec2 node, inout int level, int top, ivec2 first, ivec2 last, bool down) {
   if (down) {
     level--;
     node <<= 1;
     return true;
   }
-  int both = node.x & node.y, up = 0;
-  while (level + up < top && (both >> up & 1) == 1) up++;
+  int both = node.x & node.y, lowest_zero = ~both & (both + 1);
+  int up = min((floatBitsToInt(float(lowest_zero)) >> 23) - 127, top - level);
   level += up;
   node >>= up;
   if (level < top) {
@@ -364,38 +376,34 @@ bool pn_walk(inout ivec2 node, inout int level, int top, ivec2 first, ivec2 last
   return node.y <= last.y;
 }
 
-// Depth first over the blocks that the window touches, without a stack. Where quads are covered exactly, the inner
-// loop goes on until one must be, so that neighbouring pixels do that together. Software GL ends a shader's loops
-// after 65535 turns in all.
-void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, pn_Window window,
-                float merge, inout pn_Cover c) {
+// Depth first over the blocks that the window touches, without a stack. A quad that is covered exactly takes a turn
+// for each of its rows. Past PN_TURNS turns, over all layers and maps, blocks are looked at no closer.
+void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer,
+                pn_Window window, float merge, inout pn_Cover c) {
   int extent = max(window.high.x - window.low.x, window.high.y - window.low.y), top = 0;
   while ((extent >> top) > 2) top++;
   ivec2 first = window.low >> top, last = window.high >> top;
-  ivec2 node = first;
-  int level = top, turns = 0;
+  ivec2 node = first, rows = ivec2(0);
+  int level = top;
   bool going = true;
+  pn_Quad pending;
+  while (going || rows.x < rows.y) {
+    pn_search_turns++;
 #if PN_PRIMITIVE == PN_QUAD_EXACT
-  while (going) {
-    ivec3 quad = ivec3(-1); // and its level
-    while (going && quad.x < 0 && turns < 15000) {
-      turns++;
-      pn_search_done.y += 1.0;
-      int what = pn_visit_block(light, maps, range, r, map, layer, node, level, merge, c);
-      if (what == PN_LEAF_QUAD) quad = ivec3(node, level);
-      going = pn_walk(node, level, top, first, last, what == PN_DOWN) && !pn_is_full(c);
+    if (rows.x < rows.y) {
+      pn_cover_quad_row(c, pending.x, pending.y, rows.x);
+      rows.x++;
+      continue;
     }
-    if (quad.x >= 0) pn_texel_quad(light, maps, r, map, layer, quad.xy << quad.z, (quad.xy + 1) << quad.z, c);
-    going = going && turns < 15000;
-  }
-#else
-  while (going && turns < 30000) {
-    turns++;
+#endif
     pn_search_done.y += 1.0;
-    bool down = pn_visit_block(light, maps, range, r, map, layer, node, level, merge, c) == PN_DOWN;
+    int what = pn_visit_block(light, maps, range, r, map, layer, node, level, merge, c, pending);
+    bool down = what == PN_DOWN;
+#if PN_PRIMITIVE == PN_QUAD_EXACT
+    if (what == PN_LEAF_QUAD) rows = pn_quad_rows(pending.y);
+#endif
     going = pn_walk(node, level, top, first, last, down) && !pn_is_full(c);
   }
-#endif
 }
 #endif
 

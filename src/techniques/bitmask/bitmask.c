@@ -50,7 +50,7 @@ static void preset(int choice, double *values) {
     values[SAMPLES] = SAMPLES_32;
     values[PRIMITIVE] = PN_PRIMITIVE_QUAD_EXACT;
     values[MAPS] = MAPS_LAYERS;
-    values[LAYERS] = 6;
+    values[LAYERS] = 10;
     values[MERGE] = 0.5;
   }
 }

@@ -45,6 +45,17 @@ bool pn_is_full(pn_Cover c) {
 #endif
 }
 
+#if PN_PRIMITIVE == PN_QUAD_EXACT
+// A quad covered exactly, a row at a time, as the walk of the search takes it. Corners in the same order.
+ivec2 pn_quad_rows(vec4 y) { return pn_rows_between(min(min(y.x, y.y), min(y.z, y.w)), max(max(y.x, y.y), max(y.z, y.w))); }
+
+void pn_cover_quad_row(inout pn_Cover c, vec4 x, vec4 y, int row) {
+  vec2 p10 = vec2(x.y, y.y), p01 = vec2(x.z, y.z);
+  pn_add_triangle_row(c, vec2(x.x, y.x), p10, p01, row);
+  pn_add_triangle_row(c, p10, vec2(x.w, y.w), p01, row);
+}
+#endif
+
 #include "search/search.glsl"
 
 float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r) {

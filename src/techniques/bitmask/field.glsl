@@ -97,22 +97,28 @@ uint pn_triangle_row(vec2 a, vec2 b, vec2 c, float y, float offset) {
   return ends.x < ends.y ? pn_sample_range(ends.x, ends.y, offset) : 0u;
 }
 
+// First row, and the one after the last, that have samples between two heights.
+ivec2 pn_rows_between(float low, float high) {
+  return ivec2(clamp(ceil(vec2(low * float(PN_GRID) - 0.75, high * float(PN_GRID) - 0.25)), 0.0, float(PN_GRID)));
+}
+
+// Adds the samples of row j inside a triangle.
+void pn_add_triangle_row(inout pn_Field f, vec2 a, vec2 b, vec2 c, int j) {
+#if PN_SAMPLES == 17
+  float offset = (j & 1) == 0 ? 0.75 : 0.25;
+  uint columns = pn_triangle_row(a, b, c, (float(j) + 0.25) / 16.0, offset) & pn_even_columns |
+                 pn_triangle_row(a, b, c, (float(j) + 0.75) / 16.0, offset) & ~pn_even_columns;
+#else
+  uint columns = pn_triangle_row(a, b, c, (float(j) + 0.5) / float(PN_GRID), 0.5);
+#endif
+  uint spread = pn_spread_columns(columns, columns);
+  for (int i = 0; i < PN_WORDS; i++) f.bits[i] |= spread & pn_spread_rows(1u << uint(j), i);
+}
+
 // Adds the samples inside a triangle, row by row.
 void pn_add_triangle(inout pn_Field f, vec2 a, vec2 b, vec2 c) {
-  float low = min(a.y, min(b.y, c.y)), high = max(a.y, max(b.y, c.y));
-  int first = int(clamp(ceil(low * float(PN_GRID) - 0.75), 0.0, float(PN_GRID)));
-  int last = int(clamp(ceil(high * float(PN_GRID) - 0.25), 0.0, float(PN_GRID)));
-  for (int j = first; j < last; j++) {
-#if PN_SAMPLES == 17
-    float offset = (j & 1) == 0 ? 0.75 : 0.25;
-    uint columns = pn_triangle_row(a, b, c, (float(j) + 0.25) / 16.0, offset) & pn_even_columns |
-                   pn_triangle_row(a, b, c, (float(j) + 0.75) / 16.0, offset) & ~pn_even_columns;
-#else
-    uint columns = pn_triangle_row(a, b, c, (float(j) + 0.5) / float(PN_GRID), 0.5);
-#endif
-    uint spread = pn_spread_columns(columns, columns);
-    for (int i = 0; i < PN_WORDS; i++) f.bits[i] |= spread & pn_spread_rows(1u << uint(j), i);
-  }
+  ivec2 rows = pn_rows_between(min(a.y, min(b.y, c.y)), max(a.y, max(b.y, c.y)));
+  for (int j = rows.x; j < rows.y; j++) pn_add_triangle_row(f, a, b, c, j);
 }
 
 pn_Field pn_field_empty() {

@@ -2,6 +2,16 @@
 // smooths a hard shadow's edge by so many texels; the light's size plays no part.
 #include "search/lookup.glsl"
 
+// A texel counted from one tile of a wide light, which may lie in another.
+float pn_tap(int light, highp sampler2DArray maps, int map, pn_Receiver r, ivec2 texel) {
+  if (pn_map_count(light) > 1) {
+    vec2 st = pn_map_st(light, map, vec2(texel) + 0.5);
+    map = pn_map_at(light, st);
+    texel = ivec2(floor(pn_map_texel(light, map, st)));
+  }
+  return pn_texel_blocks(light, maps, map, r, texel);
+}
+
 // A box of n x n texels centred on the position: texels at its border count by the part that lies inside.
 float pn_box(int light, highp sampler2DArray maps, int map, pn_Receiver r, vec2 at, int n) {
   vec2 low = at - 0.5 * float(n);
@@ -11,7 +21,7 @@ float pn_box(int light, highp sampler2DArray maps, int map, pn_Receiver r, vec2 
     for (int x = 0; x <= n; x++) {
       ivec2 texel = first + ivec2(x, y);
       vec2 inside = clamp(low + float(n) - vec2(texel), 0.0, 1.0) - clamp(low - vec2(texel), 0.0, 1.0);
-      blocked += inside.x * inside.y * pn_texel_blocks(light, maps, map, r, texel);
+      blocked += inside.x * inside.y * pn_tap(light, maps, map, r, texel);
     }
   return blocked / float(n * n);
 }
@@ -29,7 +39,7 @@ float pn_bicubic(int light, highp sampler2DArray maps, int map, pn_Receiver r, v
   float blocked = 0.0;
   for (int y = 0; y < 4; y++)
     for (int x = 0; x < 4; x++)
-      blocked += wx[x] * wy[y] * pn_texel_blocks(light, maps, map, r, base + ivec2(x, y) - 1);
+      blocked += wx[x] * wy[y] * pn_tap(light, maps, map, r, base + ivec2(x, y) - 1);
   return blocked;
 }
 

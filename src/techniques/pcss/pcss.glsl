@@ -12,7 +12,8 @@ vec2 pn_cell(int i, int n) { return (2.0 * vec2(i % n, i / n) + 1.0) / float(n) 
 // is left to a finer step.
 vec2 pn_search_step(int light, highp sampler2DArray maps, pn_Receiver r, int n, float w, bool inner) {
   vec2 window = pn_search_window(pn_extent(light), w, r.m.z);
-  float cell = window.x * window.y;
+  vec2 share = window / (float(n) * pn_extent(light));
+  float cell = share.x * share.y;
   vec2 sum = vec2(0.0);
   for (int i = 0; i < n * n; i++) {
     vec2 at = pn_cell(i, n);
@@ -23,7 +24,7 @@ vec2 pn_search_step(int light, highp sampler2DArray maps, pn_Receiver r, int n, 
     // A texel that does not project onto the light itself blocks nothing, though it lies in the window of a nearer one.
     vec2 reach = pn_search_window(pn_extent(light), q.z, r.m.z) + 0.5 / pn_lights[light].map_bounds[map].zw;
     if (!pn_blocks_apart(light, r, q) || any(greaterThan(abs(q.xy - r.m.xy), reach))) continue;
-    float weight = cell / ((q.z - r.m.z) * (q.z - r.m.z));
+    float weight = min(cell / ((q.z - r.m.z) * (q.z - r.m.z)), 1.0); // no sample hides more than the light
     sum += weight * vec2(q.z, 1.0);
   }
   return sum;
