@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "host/shader_cache.h"
 #include "message.h"
 
 /* Ways to a display: one for each EGL device, and what is left where devices cannot be enumerated. */
@@ -52,6 +53,7 @@ static void unsilence(int saved) {
 }
 
 static int find_candidates(struct candidate *out) {
+  shader_cache_guard();
   const char *extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   int count = 0, any_software = 0;
   if (has_word(extensions, "EGL_EXT_device_base") ||

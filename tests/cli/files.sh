@@ -44,6 +44,12 @@ status=0
 "$program" render $small -o x.png --json - >/dev/full 2>err || status=$?
 [ "$status" = 1 ] || fail "full standard output with --json -: $status"
 
+# A cache folder without room (a file system of 0 bytes) costs the driver its cache, not the run.
+XDG_CACHE_HOME=/proc run 0 render $small -o x.png --verbose
+grep -q "shader cache is off" err || fail "no word about the driver's cache: $(cat err)"
+XDG_CACHE_HOME=relative run 0 render $small -o x.png
+[ ! -e relative ] || fail "a relative XDG_CACHE_HOME was used"
+
 # Ctrl-C in the middle of a frame that takes long: 130 within a second, nothing left behind.
 rm -rf ./*
 cat >interrupt.py <<'PY'
