@@ -10,6 +10,7 @@
 static void on_message(void *user, pn_log_level level, int message_id, const char *text) {
   struct client *client = user;
   if (level == PN_LOG_ERROR) snprintf(client->reason, sizeof client->reason, "%s", text);
+  else if (client->warming) return;
   else if (level == PN_LOG_WARNING) warning("%s", text);
   else note("%s: %s", pn_message_name(message_id), text);
 }
@@ -57,9 +58,7 @@ static int add_casters(struct client *client, const struct gpu_scene *gpu) {
   return status;
 }
 
-static int set_receiver(struct client *client, const struct gbuffer *g, int scale) {
-  int status = client_check(client, pn_receiver_create(client->context, &client->receiver));
-  if (status) return status;
+static void describe_receiver(const struct gbuffer *g, int scale, pn_receiver_desc *out) {
   pn_receiver_desc desc = PN_RECEIVER_DEFAULTS;
   desc.depth_texture = g->depth;
   desc.normal_texture = g->normal;
@@ -68,7 +67,13 @@ static int set_receiver(struct client *client, const struct gbuffer *g, int scal
   desc.format = PN_FORMAT_R32F;
   memcpy(desc.view, g->view, sizeof desc.view);
   memcpy(desc.projection, g->projection, sizeof desc.projection);
-  return client_check(client, pn_receiver_set(client->receiver, &desc));
+  *out = desc;
+}
+
+static int set_receiver(struct client *client, const struct gbuffer *g, int scale) {
+  describe_receiver(g, scale, &client->view);
+  int status = client_check(client, pn_receiver_create(client->context, &client->receiver));
+  return status ? status : client_check(client, pn_receiver_set(client->receiver, &client->view));
 }
 
 int client_create(const struct gpu_scene *gpu, const struct gbuffer *g, pn_state_mode mode, struct client **out) {
@@ -110,6 +115,46 @@ static void describe_light(const struct setup *setup, const struct light *light,
   desc->map_height = setup->map[1];
 }
 
+/* Drivers compile for the state of a texture too, and whether its size is a power of two is part of that. */
+static int small_size(int size, int power_of_two, int other) {
+  int small = size & (size - 1) ? other : power_of_two;
+  return small < size ? small : size;
+}
+
+static int draw_small(struct client *client, pn_light *light, pn_light_desc *desc, pn_receiver *view, pn_fit fit) {
+  desc->fit = fit;
+  int status = client_check(client, pn_light_set(light, desc));
+  if (!status) status = client_check(client, pn_maps_update(light, client->casters, PN_GROUPS_ALL, &view, 1));
+  return status ? status : client_check(client, pn_visibility(light, view));
+}
+
+/* Drivers compile at the first draw, however early programs were linked: llvmpipe takes seconds. A light and a view of
+ * their own take that on themselves, so that the first frame is a frame. The fit to all casters is drawn as well,
+ * because nothing may cast a shadow on the little that the small view sees. */
+static int warm_up(struct client *client, const pn_light_desc *like, const char *spec) {
+  pn_light_desc desc = *like;
+  pn_receiver_desc small = client->view;
+  desc.map_width = small_size(like->map_width, 64, 48);
+  desc.map_height = small_size(like->map_height, 64, 48);
+  small.width = small_size(client->width, 64, 48);
+  small.height = small_size(client->height, 64, 48);
+  small.x = (client->width - small.width) / 2;
+  small.y = (client->height - small.height) / 2;
+  pn_light *light = NULL;
+  pn_receiver *view = NULL;
+  client->warming = 1;
+  int status = client_check(client, pn_light_create(client->context, &light));
+  if (!status) status = client_check(client, pn_light_technique(light, spec, NULL, 0));
+  if (!status) status = client_check(client, pn_receiver_create(client->context, &view));
+  if (!status) status = client_check(client, pn_receiver_set(view, &small));
+  if (!status) status = draw_small(client, light, &desc, view, like->fit);
+  if (!status && like->fit != PN_FIT_CASTERS) status = draw_small(client, light, &desc, view, PN_FIT_CASTERS);
+  pn_receiver_destroy(&view);
+  pn_light_destroy(&light);
+  client->warming = 0;
+  return status;
+}
+
 int client_light(struct client *client, const struct setup *setup, const struct light *light, const char *spec, pn_light **out) {
   pn_light_desc desc;
   describe_light(setup, light, &desc);
@@ -121,6 +166,7 @@ int client_light(struct client *client, const struct setup *setup, const struct 
   }
   if (!status) status = client_check(client, pn_light_set(*out, &desc));
   if (!status && spec) status = client_check(client, pn_prepare(client->context, spec));
+  if (!status && spec) status = warm_up(client, &desc, spec);
   return status;
 }
 

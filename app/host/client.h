@@ -9,15 +9,17 @@ struct client {
   pn_context *context;
   pn_casters *casters;
   pn_receiver *receiver;
+  pn_receiver_desc view; /* the receiver's */
   int width, height;
   char reason[400]; /* the library's latest error */
+  int warming;      /* nonzero: warnings are not passed on, the real frame will repeat them */
 };
 
 /* gpu and gbuffer must outlive the client. Exit status. */
 int client_create(const struct gpu_scene *gpu, const struct gbuffer *gbuffer, pn_state_mode mode, struct client **out);
 void client_free(struct client **client); /* and its lights */
 
-/* A light of the set-up's map and fit, with a technique. spec NULL: the library's default. light: the scene's own, or another. */
+/* A light of the set-up's map and fit, with a technique whose programs the driver has compiled. spec NULL: the library's default. light: the scene's own, or another. */
 int client_light(struct client *client, const struct setup *setup, const struct light *light, const char *spec, pn_light **out);
 
 /* Maps and visibility of one frame. */
