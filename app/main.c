@@ -10,10 +10,10 @@
 const struct command_row commands[] = {
     {"render", COMMAND_RENDER, command_render, 1, 1, "SCENE [options]", "one picture of SCENE under one technique"},
     {"compare", COMMAND_COMPARE, command_compare, 1, 1, "SCENE [options]", "several techniques against the reference"},
-    {"study", COMMAND_STUDY, command_missing, 1, 1000, "NAME... | all",
-     "the papers' experiments, as CSV, plots and a report"},
+    {"study", COMMAND_STUDY, command_missing, 0, 1000, "NAME... | all",
+     "the papers' experiments, as CSV, plots and a report (not in this version)"},
     {"bench", COMMAND_BENCH, command_bench, 0, 1, "[SCENE] [options]", "stage times"},
-    {"view", COMMAND_VIEW, command_missing, 0, 1, "[SCENE] [options]", "interactive window"},
+    {"view", COMMAND_VIEW, command_missing, 0, 1, "[SCENE] [options]", "interactive window (not in this version)"},
     {"list", COMMAND_LIST, command_list, 0, 1, "[techniques|scenes|studies]",
      "what there is to choose from; --verbose: with parameters"},
     {"info", COMMAND_INFO, command_info, 0, 0, "", "GL devices, limits, which accelerations are in use"},
