@@ -9,6 +9,7 @@
 
 #include "image.h"
 #include "message.h"
+#include "names.h"
 #include "option_values.h"
 #include "scene/vector.h"
 
@@ -71,15 +72,55 @@ static char *read_text(const char *path, size_t *size) {
     input_error("--setup %s: %s", path, strerror(errno));
     return NULL;
   }
-  int usable = fstat(fileno(file), &info) == 0 && S_ISREG(info.st_mode) && info.st_size <= SETUP_FILE_MAX;
-  if (!usable) input_error("--setup %s: is not a file of the size that penumbra writes", path);
-  if (usable && !(text = malloc((size_t)info.st_size + 1))) memory_error();
+  const char *problem = fstat(fileno(file), &info) != 0           ? strerror(errno)
+                        : S_ISDIR(info.st_mode)                   ? "is a directory, not a JSON file"
+                        : !S_ISREG(info.st_mode)                  ? "is not a regular file"
+                        : info.st_size > (off_t)SETUP_FILE_MAX    ? "is larger than 64 MB, too large for a set-up"
+                                                                  : NULL;
+  if (problem) input_error("--setup %s: %s", path, problem);
+  if (!problem && !(text = malloc((size_t)info.st_size + 1))) memory_error();
   if (text) {
     *size = fread(text, 1, (size_t)info.st_size, file);
     text[*size] = 0;
   }
   fclose(file);
   return text;
+}
+
+static const char *const scene_keys[] = {"name",  "triangles",        "light", "camera", "size", "map",
+                                         "split", "visibility_scale", "fit",   "ground", "up",   NULL};
+static const char *const light_keys[] = {"type", "center", "direction", "u", "v", "size", "target", "up", NULL};
+static const char *const camera_keys[] = {"position", "target", "up", "fov", NULL};
+
+static int count_names(const char *const *names) {
+  int count = 0;
+  while (names[count]) count++;
+  return count;
+}
+
+static int is_among(const char *name, const char *const *names) {
+  for (; *names; names++)
+    if (strcmp(name, *names) == 0) return 1;
+  return 0;
+}
+
+/* A misspelt key would otherwise be a value that silently does nothing. */
+static void warn_about_keys(const char *path, const char *where, const cJSON *object, const char *const *known) {
+  const cJSON *item;
+  char hint[100];
+  if (cJSON_IsObject(object)) cJSON_ArrayForEach(item, object) {
+      if (is_among(item->string, known)) continue;
+      int near = nearest_name(item->string, known, count_names(known), hint, sizeof hint);
+      warning("--setup %s: %s has an unknown key '%s', which is not read%s%s", path, where, item->string,
+              near ? "; " : "", near ? hint : "");
+    }
+}
+
+/* Whether an object says anything about a set-up: name and triangles alone do not. */
+static int has_setup(const cJSON *object) {
+  for (const char *const *key = scene_keys + 2; *key; key++)
+    if (cJSON_GetObjectItemCaseSensitive(object, *key)) return 1;
+  return 0;
 }
 
 int setup_read(const char *path, cJSON **out) {
@@ -95,12 +136,15 @@ int setup_read(const char *path, cJSON **out) {
     cJSON_Delete(root);
     root = scene;
   }
-  if (cJSON_IsObject(root) && (cJSON_HasObjectItem(root, "light") || cJSON_HasObjectItem(root, "camera"))) {
+  if (cJSON_IsObject(root) && has_setup(root)) {
+    warn_about_keys(path, "the scene", root, scene_keys);
+    warn_about_keys(path, "light", cJSON_GetObjectItemCaseSensitive(root, "light"), light_keys);
+    warn_about_keys(path, "camera", cJSON_GetObjectItemCaseSensitive(root, "camera"), camera_keys);
     *out = root;
     return STATUS_OK;
   }
   cJSON_Delete(root);
-  return input_error("--setup %s: holds no scene with a light or a camera", path);
+  return input_error("--setup %s: holds no set-up of a scene, such as a light, a camera or a size", path);
 }
 
 /* Reading: one struct carries where we are, and whether something was wrong already, so that only the first fault
@@ -219,7 +263,9 @@ int setup_apply_json(const char *path, const cJSON *json, struct setup *setup) {
   const cJSON *light = cJSON_GetObjectItemCaseSensitive(json, "light"),
               *camera = cJSON_GetObjectItemCaseSensitive(json, "camera");
   if (cJSON_IsObject(light)) get_light(&r, light, &setup->light);
+  else if (has(json, "light")) complain(&r, "light", "an object");
   if (cJSON_IsObject(camera)) get_camera(&r, camera, &setup->camera);
+  else if (has(json, "camera")) complain(&r, "camera", "an object");
   get_size(&r, json, "size", IMAGE_SIZE_MAX, setup->size);
   get_size(&r, json, "map", PN_MAP_SIZE_MAX, setup->map);
   get_fit(&r, json, setup);
