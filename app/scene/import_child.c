@@ -115,6 +115,8 @@ static void describe_dropped(const struct importer *importer, char *text, size_t
     const char *one, *many;
   } rows[] = {{importer->dropped_nan, "triangle with a coordinate that is not finite",
                "triangles with coordinates that are not finite"},
+              {importer->dropped_far, "triangle with a coordinate beyond 1e15",
+               "triangles with coordinates beyond 1e15"},
               {importer->dropped_area, "triangle without area", "triangles without area"},
               {importer->dropped_index, "triangle with a corner that does not exist",
                "triangles with corners that do not exist"},
@@ -129,8 +131,14 @@ static void describe_dropped(const struct importer *importer, char *text, size_t
   }
 }
 
+/* ".glb" where Assimp has an importer for it: then the file is not what its name says; else NULL. */
+static const char *known_extension(const char *path) {
+  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+  return dot && aiIsExtensionSupported(dot) ? dot : NULL;
+}
+
 /* The importer's own words, without line ends. */
-static void send_import_error(int fd) {
+static void send_import_error(int fd, const char *path) {
   const char *text = aiGetErrorString();
   if (!text || !*text) text = "no importer can read it";
   char line[300];
@@ -149,14 +157,17 @@ static void send_import_error(int fd) {
               "importing it takes more memory than a file of its size should need; it is probably damaged");
     return;
   }
-  send_text(fd, RECORD_ERROR, "cannot be imported: %s", line);
+  const char *extension = known_extension(path);
+  if (extension && strstr(line, "No suitable reader"))
+    send_text(fd, RECORD_ERROR, "cannot be imported: it is damaged, or not a %.20s file", extension);
+  else send_text(fd, RECORD_ERROR, "cannot be imported: %s", line);
 }
 
 void import_child(const char *path, int up_is_z, int fd) {
   struct importer importer = {.fd = fd, .path = path};
   importer.model = read_model(path);
   if (!importer.model || !importer.model->mRootNode) {
-    send_import_error(fd);
+    send_import_error(fd, path);
     return;
   }
   unsigned count = importer.model->mNumMeshes;

@@ -15,7 +15,7 @@ struct importer {
   struct sent_mesh *sent;        /* one for each of the model's meshes */
   struct material_alpha *alphas; /* one for each material */
   int mesh_count, texture_count, instance_count;
-  uint64_t dropped_nan, dropped_area, dropped_index, dropped_instances;
+  uint64_t dropped_nan, dropped_far, dropped_area, dropped_index, dropped_instances;
 };
 
 /* Writes to the parent; ends the process where the parent has gone. */

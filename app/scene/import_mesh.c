@@ -10,8 +10,9 @@
 /* Far beyond any scene, and small enough that squares of distances stay finite floats. */
 static const float coordinate_max = 1e15f;
 
-static int finite_vertex(const struct aiVector3D *p) {
-  /* NaN fails every comparison. */
+static int is_finite(const struct aiVector3D *p) { return isfinite(p->x) && isfinite(p->y) && isfinite(p->z); }
+
+static int is_near(const struct aiVector3D *p) {
   return fabsf(p->x) <= coordinate_max && fabsf(p->y) <= coordinate_max && fabsf(p->z) <= coordinate_max;
 }
 
@@ -33,8 +34,12 @@ static const unsigned *usable(struct importer *importer, const struct aiMesh *me
     return NULL;
   }
   const struct aiVector3D *p = mesh->mVertices;
-  if (!finite_vertex(&p[i[0]]) || !finite_vertex(&p[i[1]]) || !finite_vertex(&p[i[2]])) {
+  if (!is_finite(&p[i[0]]) || !is_finite(&p[i[1]]) || !is_finite(&p[i[2]])) {
     importer->dropped_nan++;
+    return NULL;
+  }
+  if (!is_near(&p[i[0]]) || !is_near(&p[i[1]]) || !is_near(&p[i[2]])) {
+    importer->dropped_far++;
     return NULL;
   }
   if (!has_area(&p[i[0]], &p[i[1]], &p[i[2]])) {

@@ -32,6 +32,7 @@ static int apply_ground(struct scene *scene, enum ground ground, int builtin) {
 
 int scene_load(const struct scene_request *request, struct scene **out) {
   *out = NULL;
+  if (!*request->name) return input_error("SCENE is empty: give a model file or builtin:NAME");
   static const char prefix[] = "builtin:";
   int builtin = strncmp(request->name, prefix, sizeof prefix - 1) == 0;
   struct scene *scene = NULL;

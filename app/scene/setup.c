@@ -77,9 +77,47 @@ int light_finish(struct light *light) {
   return STATUS_OK;
 }
 
+static int box_holds_caster(const struct scene *scene, const double box[6]) {
+  for (int i = 0; i < scene->instance_count; i++) {
+    double low[3], high[3];
+    int meets = scene->instances[i].casts;
+    if (meets) instance_bounds(scene, &scene->instances[i], low, high);
+    for (int k = 0; k < 3 && meets; k++) meets = low[k] <= box[3 + k] && high[k] >= box[k];
+    if (meets) return 1;
+  }
+  return 0;
+}
+
+static void warn_about_fit(const struct scene *scene) {
+  const double *box = scene->setup.fit_bounds;
+  int flat = 0;
+  if (scene->setup.fit != PN_FIT_GIVEN) return;
+  for (int k = 0; k < 3; k++) flat += !(box[3 + k] > box[k]);
+  if (flat > 1) warning("--fit: the box has no extent: the depth map covers next to nothing");
+  else if (!box_holds_caster(scene, box)) warning("--fit: nothing that casts is in the box: nothing casts a shadow");
+}
+
+/* Whether all of the light is below the plane that receives, or a sun shines upwards onto it from below. */
+static int lies_below_ground(const struct scene *scene) {
+  const struct light *light = &scene->setup.light;
+  double corners[4][3], low[3] = {0}, high[3] = {0};
+  int grounds = 0;
+  for (int i = 0; i < scene->instance_count; i++)
+    if (!scene->instances[i].casts && !grounds++) instance_bounds(scene, &scene->instances[i], low, high);
+  if (grounds != 1 || low[1] != high[1]) return 0; /* none, or walls too */
+  if (light->shape == PN_LIGHT_SUN) return light->direction[1] >= sin(fmax(light->size[0], light->size[1]) * pi / 360);
+  light_corners(light, corners);
+  for (int i = 0; i < 4; i++)
+    if (corners[i][1] > low[1]) return 0;
+  return 1;
+}
+
 static void warn_about_light(const struct scene *scene) {
   const struct light *light = &scene->setup.light;
-  if (light->shape == PN_LIGHT_SUN) return;
+  if (light->shape == PN_LIGHT_SUN) {
+    if (lies_below_ground(scene)) warning("the sun shines from below the ground and lights nothing of it");
+    return;
+  }
   int inside = 1, in_front = 0;
   for (int k = 0; k < 3; k++)
     inside &= light->center[k] > scene->bounds_min[k] && light->center[k] < scene->bounds_max[k];
@@ -91,6 +129,7 @@ static void warn_about_light(const struct scene *scene) {
   if (!in_front) warning("the whole model lies behind the light, which shines away from it: nothing casts a shadow");
   else if (inside)
     warning("the light's centre lies inside the model's bounds: what is behind the light casts no shadow");
+  else if (lies_below_ground(scene)) warning("the light is below the ground and lights nothing of it");
 }
 
 int setup_finish(struct scene *scene) {
@@ -99,6 +138,7 @@ int setup_finish(struct scene *scene) {
   if (!status) status = light_finish(&setup->light);
   if (status) return status;
   warn_about_light(scene);
+  warn_about_fit(scene);
   return STATUS_OK;
 }
 
