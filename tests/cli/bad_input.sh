@@ -8,6 +8,7 @@ head -c 4096 /dev/urandom >garbage.glb
 head -c 300 /dev/urandom >garbage.xyz
 printf 'v 0 0 0\nv 1 0 0\nl 1 2\n' >lines.obj
 printf 'v nan 0 0\nv inf 0 0\nv 0 1 0\nf 1 2 3\n' >nan.obj
+printf 'v 1e30 0 0\nv 0 1e30 0\nv 0 1 0\nf 1 2 3\n' >far.obj
 printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n' >flat.obj
 printf 'solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0' >cut.stl
 {
@@ -25,7 +26,8 @@ rejected 2 'none.obj: No such file' render none.obj
 rejected 2 'is a directory' render .
 rejected 2 'is empty' render empty.obj
 rejected 2 'not a regular file' render pipe.obj
-rejected 2 'garbage.glb: ' render garbage.glb
+rejected 2 'SCENE is empty' render ''
+rejected 2 'garbage.glb: .*damaged, or not a .glb file' render garbage.glb
 rejected 2 'garbage.xyz: ' render garbage.xyz
 rejected 2 'cut.gltf: ' render cut.gltf
 rejected 2 'cut.stl: ' render cut.stl
@@ -33,6 +35,7 @@ rejected 2 'cut.ply: ' render cut.ply
 rejected 2 'huge.off: ' render huge.off
 rejected 2 'no triangles' render lines.obj
 rejected 2 'no usable triangles.*not finite' render nan.obj
+rejected 2 'no usable triangles.*beyond 1e15' render far.obj
 rejected 2 'no usable triangles.*without area' render flat.obj
 rejected 2 'builtin:boxs: .*did you mean boxes' render builtin:boxs
 rejected 2 'takes no number' render builtin:boxes=3
@@ -42,6 +45,8 @@ for n in 0 -1 x 1e3 '' 5000; do rejected 2 'from 1 to 4096' render "builtin:copi
 rejected 2 "unknown command 'rendr'; did you mean render" rendr
 rejected 2 "unknown command 'frobnicate'" frobnicate
 rejected 2 'needs SCENE' render
+rejected 2 'not available in this version' study
+rejected 2 'not available in this version' view
 rejected 2 'one argument too many' render ok.obj ok.obj
 rejected 2 "unknown 'scens'; did you mean scenes" list scens
 rejected 2 'not techniques, scenes or studies' list everything
@@ -53,6 +58,8 @@ rejected 2 'unknown option -x' render ok.obj -x
 rejected 2 '--output needs a value' render ok.obj -o
 rejected 2 '--split takes no value' render ok.obj --split=yes
 rejected 2 '--html is not an option of penumbra render' render ok.obj --html x.html
+rejected 2 '--no-cache is not an option of penumbra render' render ok.obj --no-cache
+rejected 2 '--reference-samples is not an option of penumbra bench' bench --reference-samples 4
 rejected 2 'not an option of penumbra list' list --size 3x3
 
 # values
@@ -97,10 +104,13 @@ rejected 2 '--split: .*no ground' render ok.obj --split --ground off
 
 # --setup
 rejected 2 '--setup none.json: No such file' render $s --setup none.json
+mkdir folder.json
+rejected 2 '--setup folder.json: is a directory' render $s --setup folder.json
+rejected 2 '--setup /dev/zero: is not a regular file' render $s --setup /dev/zero
 echo '{' >bad.json
 rejected 2 'is not JSON' render $s --setup bad.json
 echo '{"scene":{"name":"x"}}' >bad.json
-rejected 2 'no scene with a light' render $s --setup bad.json
+rejected 2 'no set-up of a scene' render $s --setup bad.json
 for m in '"center":[1,2]' '"center":[1,2,null]' '"center":[1,2,1e40]' '"size":[0,1]' '"size":"big"' '"type":"disk"'; do
   echo "{\"scene\":{\"light\":{$m}}}" >bad.json
   rejected 2 '--setup bad.json: ' render $s --setup bad.json

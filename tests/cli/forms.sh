@@ -15,6 +15,7 @@ for command in render compare study bench view list info help; do
 done
 run 0 render --size 3x --help # help wins over what else is wrong
 run 0 --help
+[ "$(grep -c 'not in this version' out)" = 2 ] || fail "the overview offers what is not there: $(cat out)"
 run 0 -h
 run 0 --version
 grep -qE '^penumbra [0-9]+\.[0-9]+\.[0-9]+$' out || fail "version: $(cat out)"
@@ -29,6 +30,8 @@ while read -r technique; do
   run 0 help "$technique"
   grep -q "^$technique: " out || fail "help $technique"
 done <techniques
+run 0 help bitmask
+grep -qE '^      (fast|quality|best): [a-z_]+=' out || fail "help does not say what presets set: $(cat out)"
 run 0 list techniques --verbose
 grep -qE '^  samples=1\.\.64 +default 8' out || fail "parameter tables: $(cat out)"
 run 0 list scenes
@@ -71,6 +74,17 @@ printf '"u":[1,0,0],"v":[0,0,-1],"size":[1,1]}}' >>plain.json
 run 0 render builtin:boxes $small -o plain.exr --setup plain.json
 cmp plain.exr d.exr || fail "the contract's own light object means another light"
 
+# What is missing stays, and a misspelt key is told.
+echo '{"scene":{"size":[32,30]}}' >size.json
+run 0 render builtin:boxes --map 32 --frames 1 -t hard -o size.exr --setup size.json
+run 0 render builtin:boxes --map 32 --frames 1 -t hard -o same.exr --size 32x30
+cmp size.exr same.exr || fail "a set-up that only holds a size"
+echo '{"scene":{"ligth":{},"light":{"centre":[0,3,0]},"camera":{"fow":30}}}' >keys.json
+run 0 render builtin:boxes $small -o keys.exr --setup keys.json
+for hint in "'ligth'.*mean light" "'centre'.*mean center" "'fow'.*mean fov"; do
+  grep -qE "^penumbra: warning: --setup keys.json: .*$hint" err || fail "no hint $hint: $(cat err)"
+done
+
 # Raw buffers beside the picture.
 run 0 render builtin:boxes --size 48x36 --map 32 --frames 1 -t pcss:samples=3 -o x.png --save-dir raw
 [ "$(ls raw | LC_ALL=C sort | tr '\n' ' ')" = "01-pcss-samples=3.exr mask.exr normal.exr position.exr " ] ||
@@ -92,6 +106,10 @@ warned() {
 }
 warned 'inside the model' builtin:boxes --light-center 0.02,0.8,0.01 --light-target 0.02,0,0.01
 warned 'lies behind the light' builtin:boxes --light-center 0,-1,0 --light-target 0,-2,0
+warned 'below the ground' builtin:boxes --light-center 0,-9,0 --light-target 0,0,0
+warned 'from below the ground' builtin:boxes --light sun --light-size 1 --light-center 0,-9,0 --light-target 0,0,0
+warned 'box has no extent' builtin:boxes --fit 0,0,0,0,0,0
+warned 'nothing that casts is in the box' builtin:boxes --fit 90,90,90,91,91,91
 warned 'sees nothing of the scene' builtin:boxes --camera-target 0,99,0
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv nan 0 0\nf 1 2 3\nf 1 3 4\nf 1 1 2\nf 1 2 5\n' >some.obj
 warned 'some.obj: dropped 1 triangle with a coordinate that is not finite, 1 triangle without area' some.obj
