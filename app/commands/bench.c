@@ -99,8 +99,14 @@ static void report(struct bench *b, const char *key, const char *text, const str
   cJSON *object = cJSON_AddObjectToObject(b->json, key);
   cJSON_AddItemToObject(object, "hard_ms", timing_to_json(a));
   cJSON_AddItemToObject(object, "other_ms", timing_to_json(other));
-  cJSON_AddNumberToObject(object, "share", value);
+  if (isfinite(value)) cJSON_AddNumberToObject(object, "share", value);
+  else cJSON_AddNullToObject(object, "share");
 }
+
+static double spread(const struct timing *timing) { return timing->max - timing->min; }
+
+/* A small difference needs many frames. */
+static int many_frames(const struct options *o) { return o->given[OPTION_FRAMES] ? o->frames : 5 * o->frames; }
 
 /* The same frame with the GL state saved and restored in every call, and once around all calls. */
 static int bench_state(struct bench *b) {
@@ -113,13 +119,18 @@ static int bench_state(struct bench *b) {
   if (!status) status = make_lights(b, b->host.client, cheapest_technique, 1, &lights[0]);
   struct contestant c[2] = {{.client = b->host.client, .lights = &lights[0], .light_count = 1},
                             {.client = scoped, .lights = &lights[1], .light_count = 1, .in_scope = 1}};
-  if (!status) status = measure(c, 2, b->options->frames, 0);
+  if (!status) status = measure(c, 2, many_frames(b->options), 0);
   if (!status) {
     double difference = c[0].timing.median - c[1].timing.median, share = difference / c[0].timing.median;
-    char text[200];
+    char text[240], verdict[60] = "not measurable (within the noise)";
+    /* One frame has no spread to tell a difference from. */
+    int measurable =
+        c[0].timing.frames > 1 && fabs(difference) > fmax(spread(&c[0].timing), spread(&c[1].timing));
+    if (measurable) snprintf(verdict, sizeof verdict, "%+.1f %%", 100 * share);
+    else share = NAN;
     snprintf(text, sizeof text,
-             "\nstate saving: a %s frame takes %.3f ms saving state in each call, %.3f ms with one scope (%+.1f %%)",
-             cheapest_technique, c[0].timing.median, c[1].timing.median, 100 * share);
+             "\nstate saving: a %s frame takes %.3f ms saving state in each call, %.3f ms with one scope: %s",
+             cheapest_technique, c[0].timing.median, c[1].timing.median, verdict);
     report(b, "state_saving", text, &c[0].timing, &c[1].timing, share);
   }
   pn_light_destroy(&lights[0]);
