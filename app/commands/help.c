@@ -5,6 +5,33 @@
 #include "message.h"
 #include "names.h"
 
+enum { PARAMETERS_MAX = 64, LINE_MAX_TEXT = 100 };
+
+static void value_text(const pn_parameter *p, double value, char *text, size_t size) {
+  if (p->type == PN_CHOICE) snprintf(text, size, "%s", p->choices[(int)value]);
+  else if (p->type == PN_BOOL) snprintf(text, size, "%s", value != 0 ? "on" : "off");
+  else snprintf(text, size, "%g", value);
+}
+
+/* What one choice of the parameter preset sets other than the default does: asked of the library, spec by spec. */
+static void print_preset(FILE *file, const pn_technique *technique, const pn_parameter *preset, const char *choice) {
+  double initial[PARAMETERS_MAX], values[PARAMETERS_MAX];
+  char spec[160], value[64];
+  snprintf(spec, sizeof spec, "%s:%s=%s", technique->name, preset->name, choice);
+  if (pn_technique_parse(technique->name, NULL, initial, NULL, 0) != PN_OK) return;
+  if (pn_technique_parse(spec, NULL, values, NULL, 0) != PN_OK) return;
+  int column = fprintf(file, "      %s:", choice), any = 0;
+  for (int i = 0; i < technique->parameter_count; i++) {
+    const pn_parameter *p = &technique->parameters[i];
+    if (p == preset || values[i] == initial[i]) continue;
+    value_text(p, values[i], value, sizeof value);
+    if (column > LINE_MAX_TEXT) column = fprintf(file, "\n        ") - 1;
+    column += fprintf(file, " %s=%s", p->name, value);
+    any = 1;
+  }
+  fputs(any ? "\n" : " the defaults\n", file);
+}
+
 void print_technique(FILE *file, const pn_technique *technique) {
   fprintf(file, "%s: %s\n  %s\n", technique->name, technique->title, technique->help);
   if (technique->needs_meshes) fputs("  needs triangle meshes: draw callbacks cast no shadow with it\n", file);
@@ -14,19 +41,19 @@ void print_technique(FILE *file, const pn_technique *technique) {
   for (int i = 0; i < technique->parameter_count; i++) {
     const pn_parameter *p = &technique->parameters[i];
     char values[160] = "", initial[40];
-    snprintf(initial, sizeof initial, "%g", p->initial);
+    value_text(p, p->initial, initial, sizeof initial);
     if (p->type == PN_CHOICE) {
       for (int c = 0; p->choices[c]; c++)
         snprintf(values + strlen(values), sizeof values - strlen(values), "%s%s", c ? "|" : "", p->choices[c]);
-      snprintf(initial, sizeof initial, "%s", p->choices[(int)p->initial]);
     } else if (p->type == PN_BOOL) {
       snprintf(values, sizeof values, "on|off");
-      snprintf(initial, sizeof initial, "%s", p->initial != 0 ? "on" : "off");
     } else {
       snprintf(values, sizeof values, "%g..%g%s%s", p->least, p->most, *p->unit ? " " : "", p->unit);
     }
     fprintf(file, "  %s=%s  default %s\n      %s%s%s%s\n", p->name, values, initial, p->help, *p->source ? " (" : "",
             p->source, *p->source ? ")" : "");
+    if (p->type != PN_CHOICE || strcmp(p->name, "preset") != 0 || technique->parameter_count > PARAMETERS_MAX) continue;
+    for (int c = 0; p->choices[c]; c++) print_preset(file, technique, p, p->choices[c]);
   }
 }
 
