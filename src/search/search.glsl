@@ -71,16 +71,6 @@ void pn_texel_patch(int light, highp sampler2DArray maps, pn_Receiver r, int map
   pn_search_done.z += 1.0;
 }
 
-// A quad, or a block of quads taken as one, seen from the receiver: its corners in the order (0, 0), (1, 0), (0, 1),
-// (1, 1), and the rectangle through the middles of its edges (section 4). Corners keep their own w, so that
-// neighbours meet.
-struct pn_Quad {
-  vec4 x, y;      // corners on the light
-  vec2 low, high; // the rectangle
-  bool whole;     // all four corners hide light: the paper's condition
-  bool some;      // with PN_EDGES: those that do have their parts of the rectangle
-};
-
 #if PN_PRIMITIVE != PN_PATCH
 // Where the rectangle ends along one axis: at near and far, at the distances of the corners there, as far as they
 // hide: share 1 is the corner, 0 the middle.
@@ -134,7 +124,7 @@ void pn_texel_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map,
   pn_Quad q = pn_quad(light, maps, r, map, layer, first, last);
   if (!q.some) return;
   if (q.whole)
-    pn_cover_quad(c, vec2(q.x.x, q.y.x), vec2(q.x.y, q.y.y), vec2(q.x.z, q.y.z), vec2(q.x.w, q.y.w));
+    pn_cover_quad(c, q);
   else
     pn_cover_rectangle(c, q.low, q.high);
   pn_search_done.z += 1.0;
@@ -391,7 +381,7 @@ void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range
     pn_search_turns++;
 #if PN_PRIMITIVE == PN_QUAD_EXACT
     if (rows.x < rows.y) {
-      pn_cover_quad_row(c, pending.x, pending.y, rows.x);
+      pn_cover_quad_row(c, pending, rows.x);
       rows.x++;
       continue;
     }
@@ -400,7 +390,7 @@ void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range
     int what = pn_visit_block(light, maps, range, r, map, layer, node, level, merge, c, pending);
     bool down = what == PN_DOWN;
 #if PN_PRIMITIVE == PN_QUAD_EXACT
-    if (what == PN_LEAF_QUAD) rows = pn_quad_rows(pending.y);
+    if (what == PN_LEAF_QUAD) rows = pn_quad_rows(pending);
 #endif
     going = pn_walk(node, level, top, first, last, down) && !pn_is_full(c);
   }

@@ -161,20 +161,39 @@ static void add_patch(const atlas *a, const receiver *r, int map, int layer, int
   cover_box(f, &b, open_at(r, dw), how);
 }
 
-/* The mean of 1 / dw over the corners of one side that hide; 0: none does. */
-static double side_inverse(const int hide[4], const double dw[4], int first, int second) {
-  int count = (hide[first] == YES) + (hide[second] == YES);
-  return count ? ((hide[first] == YES ? 1 / dw[first] : 0) + (hide[second] == YES ? 1 / dw[second] : 0)) / count : 0;
+/* One side of a quad: how many of its two corners hide, and 1 over their mean dw; 0 where none does. */
+typedef struct { int count; double inverse; } side;
+
+static side side_of(const int hide[4], const double dw[4], const int corners[2]) {
+  side s = {0};
+  double sum = 0;
+  for (int i = 0; i < 2; i++) {
+    if (hide[corners[i]] != YES) continue;
+    s.count++;
+    sum += dw[corners[i]];
+  }
+  s.inverse = s.count ? s.count / sum : 0;
+  return s;
 }
 
-/* The rectangle through the middles of a quad's edges, as far as its corners hide: a side without any ends at the middle of the cell. */
+/* Where a side ends: share 1 at its corner, 0 at the middle of the cell. */
+static double end_of(double corner, double middle, double share, const side *own, const side *other) {
+  return (middle + share * (corner - middle)) * (own->count ? own->inverse : other->inverse);
+}
+
+/* The rectangle of as many quarters of the cell as corners hide: columns are whole or not there, and where both are, a row
+ * with one corner has half of its share. */
 static box quad_box(const receiver *r, const place q[4], const int hide[4], const double dw[4]) {
-  static const int sides[2][2][2] = {{{0, 2}, {1, 3}}, {{0, 1}, {2, 3}}};
+  static const int corners[2][2][2] = {{{0, 2}, {1, 3}}, {{0, 1}, {2, 3}}};
   box b;
+  int columns = 0;
   for (int c = 0; c < 2; c++) {
     double low = (c ? q[0].t : q[0].s) - (c ? r->m.t : r->m.s), high = (c ? q[3].t : q[3].s) - (c ? r->m.t : r->m.s);
-    double near = side_inverse(hide, dw, sides[c][0][0], sides[c][0][1]), far = side_inverse(hide, dw, sides[c][1][0], sides[c][1][1]);
-    double from = near > 0 ? low * near : 0.5 * (low + high) * far, to = far > 0 ? high * far : 0.5 * (low + high) * near;
+    side near = side_of(hide, dw, corners[c][0]), far = side_of(hide, dw, corners[c][1]);
+    if (c == 0) columns = (near.count > 0) + (far.count > 0);
+    double full = c == 0 ? 1 : columns, middle = 0.5 * (low + high);
+    double from = end_of(low, middle, c == 0 ? near.count > 0 : near.count / full, &near, &far);
+    double to = end_of(high, middle, c == 0 ? far.count > 0 : far.count / full, &far, &near);
     b.low[c] = 0.5 + 0.5 * fmin(from, to) / r->half[c];
     b.high[c] = 0.5 + 0.5 * fmax(from, to) / r->half[c];
   }

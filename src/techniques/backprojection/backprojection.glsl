@@ -12,8 +12,9 @@ void pn_cover_rectangle(inout pn_Cover c, vec2 low, vec2 high) {
 
 // Section 4: corners clamped to the light, which keeps neighbouring quads watertight; then the quad's area from its
 // diagonals.
-void pn_cover_quad(inout pn_Cover c, vec2 p00, vec2 p10, vec2 p01, vec2 p11) {
-  vec2 a = clamp(p11, 0.0, 1.0) - clamp(p00, 0.0, 1.0), b = clamp(p01, 0.0, 1.0) - clamp(p10, 0.0, 1.0);
+void pn_cover_quad(inout pn_Cover c, pn_Quad q) {
+  vec4 x = clamp(q.x, 0.0, 1.0), y = clamp(q.y, 0.0, 1.0);
+  vec2 a = vec2(x.w - x.x, y.w - y.x), b = vec2(x.z - x.y, y.z - y.y);
   c += 0.5 * abs(a.x * b.y - a.y * b.x);
 }
 

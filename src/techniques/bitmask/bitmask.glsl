@@ -11,17 +11,21 @@ void pn_cover_rectangle(inout pn_Cover c, vec2 low, vec2 high) {
   for (int i = 0; i < PN_WORDS; i++) c.bits[i] |= f.bits[i];
 }
 
-// Corners in the order (0, 0), (1, 0), (0, 1), (1, 1) of the map.
-void pn_cover_quad(inout pn_Cover c, vec2 p00, vec2 p10, vec2 p01, vec2 p11) {
 #if PN_PRIMITIVE == PN_QUAD_EXACT
-  pn_add_triangle(c, p00, p10, p01);
-  pn_add_triangle(c, p10, p11, p01);
-#else
-  // Section 4: the rectangle through the middles of the quad's edges.
-  vec2 x = 0.5 * vec2(p00.x + p01.x, p10.x + p11.x), y = 0.5 * vec2(p00.y + p10.y, p01.y + p11.y);
-  pn_cover_rectangle(c, vec2(min(x.x, x.y), min(y.x, y.y)), vec2(max(x.x, x.y), max(y.x, y.y)));
-#endif
+// A quad covered exactly, a row at a time, as the walk of the search takes it.
+ivec2 pn_quad_rows(pn_Quad q) {
+  return pn_rows_between(min(min(q.y.x, q.y.y), min(q.y.z, q.y.w)), max(max(q.y.x, q.y.y), max(q.y.z, q.y.w)));
 }
+
+void pn_cover_quad_row(inout pn_Cover c, pn_Quad q, int row) {
+  vec2 p10 = vec2(q.x.y, q.y.y), p01 = vec2(q.x.z, q.y.z);
+  pn_add_triangle_row(c, vec2(q.x.x, q.y.x), p10, p01, row);
+  pn_add_triangle_row(c, p10, vec2(q.x.w, q.y.w), p01, row);
+}
+#endif
+
+// Section 4: an arbitrary quad is covered by its rectangle.
+void pn_cover_quad(inout pn_Cover c, pn_Quad q) { pn_cover_rectangle(c, q.low, q.high); }
 
 // Covers the rectangle, or asks whether it is hidden already; true when it is now.
 bool pn_cover_or_ask(inout pn_Cover c, vec2 low, vec2 high, bool cover) {
@@ -44,17 +48,6 @@ bool pn_is_full(pn_Cover c) {
   return closed == uvec4(0xffffffffu);
 #endif
 }
-
-#if PN_PRIMITIVE == PN_QUAD_EXACT
-// A quad covered exactly, a row at a time, as the walk of the search takes it. Corners in the same order.
-ivec2 pn_quad_rows(vec4 y) { return pn_rows_between(min(min(y.x, y.y), min(y.z, y.w)), max(max(y.x, y.y), max(y.z, y.w))); }
-
-void pn_cover_quad_row(inout pn_Cover c, vec4 x, vec4 y, int row) {
-  vec2 p10 = vec2(x.y, y.y), p01 = vec2(x.z, y.z);
-  pn_add_triangle_row(c, vec2(x.x, y.x), p10, p01, row);
-  pn_add_triangle_row(c, p10, vec2(x.w, y.w), p01, row);
-}
-#endif
 
 #include "search/search.glsl"
 
