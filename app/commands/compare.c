@@ -39,7 +39,7 @@ struct comparison {
   float *unoccluded; /* the light without shadows, for pictures */
   uint8_t *reference_picture, *mask, *background;
   struct report_technique *techniques;
-  char facts[200];
+  char facts[320], sizes[320];
   struct report report;
 };
 
@@ -215,12 +215,23 @@ static int make_pictures(struct comparison *c) {
 
 static void describe_setup(struct comparison *c) {
   const struct setup *setup = &c->scene->setup;
-  int sun = setup->light.shape == PN_LIGHT_SUN;
-  int n = snprintf(c->facts, sizeof c->facts, "%s %g x %g%s   %d x %d pixels", sun ? "sun" : "rectangle light",
-                   setup->light.size[0], setup->light.size[1], sun ? " degrees" : "", c->view->width, c->view->height);
-  if (setup->map[0])
-    n += snprintf(c->facts + n, sizeof c->facts - (size_t)n, "   map %d x %d", setup->map[0], setup->map[1]);
-  if (setup->split) snprintf(c->facts + n, sizeof c->facts - (size_t)n, "   split");
+  const struct light *light = &setup->light;
+  const struct camera *camera = &setup->camera;
+  const double *p = light->center, *q = light->target, *e = camera->position, *t = camera->target;
+  const double *b = setup->fit_bounds;
+  int sun = light->shape == PN_LIGHT_SUN;
+  snprintf(c->facts, sizeof c->facts,
+           "%s %.4g x %.4g%s at %.4g, %.4g, %.4g towards %.4g, %.4g, %.4g   "
+           "camera at %.4g, %.4g, %.4g towards %.4g, %.4g, %.4g, %.4g degrees",
+           sun ? "sun" : "rectangle light", light->size[0], light->size[1], sun ? " degrees" : "", p[0], p[1], p[2],
+           q[0], q[1], q[2], e[0], e[1], e[2], t[0], t[1], t[2], camera->fov);
+  char fit[120];
+  if (setup->fit == PN_FIT_GIVEN)
+    snprintf(fit, sizeof fit, "box %.4g, %.4g, %.4g to %.4g, %.4g, %.4g", b[0], b[1], b[2], b[3], b[4], b[5]);
+  else snprintf(fit, sizeof fit, "%s", setup->fit == PN_FIT_CASTERS ? "casters" : "visible");
+  snprintf(c->sizes, sizeof c->sizes, "%d x %d pixels   map %d x %d fitted to %s%s%s", c->view->width, c->view->height,
+           setup->map[0], setup->map[1], fit, setup->split ? "   split: the model only casts" : "",
+           setup->visibility_scale > 1 ? "   visibility at lower resolution" : "");
 }
 
 static void describe_technique(struct comparison *c, int index) {
@@ -250,6 +261,7 @@ static void describe(struct comparison *c) {
                               .gl_version = device_version(c->host.device),
                               .title = c->scene->name,
                               .facts = c->facts,
+                              .sizes = c->sizes,
                               .samples = c->options->reference_samples,
                               .reference_ms = c->truth.seconds * 1000,
                               .width = c->view->width,

@@ -121,8 +121,8 @@ static void write_cell(FILE *file, const char *format, double value) {
 
 static void write_table(FILE *file, const struct report *report, const int *order) {
   double first = report->technique_count ? report->techniques[0].error.mae : NAN;
-  fputs("<table>\n<thead><tr><th>technique</th><th>mean error</th><th>to ", file);
-  write_escaped(file, report->technique_count ? report->techniques[0].name : "the first");
+  fputs("<table>\n<thead><tr><th>technique</th><th>mean error</th><th>ratio to ", file);
+  write_escaped(file, report->technique_count ? report->techniques[0].label : "the first");
   fputs("</th><th>rms</th><th>95 %</th><th>max</th><th>bias</th><th>shadow pixels</th><th>ms a "
         "frame</th></tr></thead>\n<tbody>\n",
         file);
@@ -141,7 +141,9 @@ static void write_table(FILE *file, const struct report *report, const int *orde
     write_cell(file, "%.2f", technique->time_median);
     fputs("</tr>\n", file);
   }
-  fputs("</tbody>\n</table>\n", file);
+  fputs("</tbody>\n</table>\n<p class=\"faint\">ratio: the technique's mean error divided by that of ", file);
+  write_escaped(file, report->technique_count ? report->techniques[0].label : "the first");
+  fputs(", the first one named; below 1 is better than it</p>\n", file);
 }
 
 /* Choice 0 is the truth, choice i + 1 technique i. */
@@ -197,16 +199,36 @@ static void write_legend(FILE *file) {
   fputs("\"></span>background</p>\n", file);
 }
 
+static void write_summary(FILE *file, const struct report_technique *technique) {
+  fputs("<p class=\"faint\">mean error ", file);
+  write_number(file, "%.4f", technique->error.mae);
+  fputs(", rms ", file);
+  write_number(file, "%.4f", technique->error.rmse);
+  fputs(", 95 % ", file);
+  write_number(file, "%.4f", technique->error.p95);
+  fputs(", max ", file);
+  write_number(file, "%.4f", technique->error.max);
+  fputs(", bias ", file);
+  write_number(file, "%+.4f", technique->error.bias);
+  fputs("; ", file);
+  write_number(file, "%.2f", technique->time_median);
+  fputs(" ms a frame</p>\n", file);
+}
+
 static int write_gallery(FILE *file, const struct report *report, const int *order) {
-  fprintf(file, "<h2>reference</h2>\n<p class=\"faint\">ray-traced, %d rays a pixel</p>\n<div class=\"pair\">\n",
-          report->samples);
+  fprintf(file, "<h2>reference</h2>\n<p class=\"faint\">ray-traced, %d ray%s a pixel, in ", report->samples,
+          report->samples == 1 ? "" : "s");
+  write_number(file, "%.1f", report->reference_ms / 1000);
+  fputs(" s</p>\n<div class=\"pair\">\n", file);
   if (!write_picture(file, report, 'p', 0, "reference", report->reference_picture)) return 0;
   fputs("</div>\n", file);
   for (int i = 0; i < report->technique_count; i++) {
     const struct report_technique *technique = &report->techniques[order[i]];
     fputs("<h2>", file);
     write_escaped(file, technique->label);
-    fputs("</h2>\n<div class=\"pair\">\n", file);
+    fputs("</h2>\n", file);
+    write_summary(file, technique);
+    fputs("<div class=\"pair\">\n", file);
     uint8_t *map = picture_error_map(report, technique->visibility);
     int written = map && write_picture(file, report, 'p', order[i] + 1, "picture", technique->picture) &&
                   write_picture(file, report, 'e', order[i] + 1, "error map", map);
@@ -228,6 +250,8 @@ enum report_status report_html(const struct report *report, FILE *file) {
   write_escaped(file, report->title);
   fputs("</h1>\n<p class=\"faint facts\">", file);
   write_escaped(file, report->facts ? report->facts : "");
+  fputs("<br>", file);
+  write_escaped(file, report->sizes ? report->sizes : "");
   fputs("<br>", file);
   write_escaped(file, report->renderer ? report->renderer : "");
   fputs("; penumbra ", file);

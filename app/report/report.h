@@ -38,7 +38,8 @@ struct report_technique {
 struct report {
   const char *version, *renderer, *gl_version;
   const char *title; /* the scene's name */
-  const char *facts; /* light, sizes: one line; may be NULL */
+  const char *facts; /* light and camera: one line; may be NULL */
+  const char *sizes; /* picture, map and what it is fitted to: one line; may be NULL */
   const cJSON *scene;
   int samples;
   double reference_ms;

@@ -10,7 +10,7 @@
 
 /* A grid of cells: truth with the legend, then each technique with its error map.
  *
- *     +---------+ +---------+        a cell: two lines of text,
+ *     +---------+ +---------+        a cell: lines of text,
  *     | truth   | | hard    |        the picture,
  *     | legend  | | errors  | ...    the error map (truth: the legend)
  *     +---------+ +---------+
@@ -18,8 +18,8 @@
 enum {
   MARGIN = 24,    /* around the sheet */
   GAP = 24,       /* between cells */
-  HEAD = 64,      /* the sheet's title */
-  CELL_HEAD = 74, /* label and numbers */
+  HEAD = 86,      /* the sheet's title and two lines */
+  CELL_HEAD = 95, /* label and numbers */
   BETWEEN = 8,    /* picture and error map */
   TILE_MAX = 640, /* pictures wider or taller than this are shrunk */
   TILE_MIN = 160,
@@ -185,11 +185,12 @@ static int draw_technique(struct pen *pen, const struct layout *layout, const st
              number("%.3f", error->max).text, number("%+.4f", error->bias).text);
   char ratio[160] = "";
   if (index > 0 && first > 0 && isfinite(error->mae))
-    snprintf(ratio, sizeof ratio, "   %.3f \xc3\x97 the error of %.80s", error->mae / first,
-             report->techniques[0].name);
+    snprintf(ratio, sizeof ratio, "%.3f \xc3\x97 the mean error of %.80s", error->mae / first,
+             report->techniques[0].label);
   colour(pen, faint);
-  write_line(pen, x, y + 63, width, 14.5, 0, "%s ms a frame   %zu shadow pixels%s",
-             number("%.2f", technique->time_median).text, error->pixels, ratio);
+  write_line(pen, x, y + 63, width, 14.5, 0, "%s ms a frame   %zu shadow pixels",
+             number("%.2f", technique->time_median).text, error->pixels);
+  write_line(pen, x, y + 84, width, 14.5, 0, "%s", ratio);
   uint8_t *map = picture_error_map(report, technique->visibility);
   int top = y + CELL_HEAD;
   int drawn = map && draw_tile(pen, layout, report, x, top, technique->picture) &&
@@ -261,7 +262,8 @@ static int draw_truth(struct pen *pen, const struct layout *layout, const struct
   write_line(pen, x, y + 42, layout->cell[0], 14.5, 0, "ray-traced, %d ray%s a pixel", report->samples,
              report->samples == 1 ? "" : "s");
   colour(pen, faint);
-  write_line(pen, x, y + 63, layout->cell[0], 14.5, 0, "%s s", number("%.1f", report->reference_ms / 1000).text);
+  write_line(pen, x, y + 63, layout->cell[0], 14.5, 0, "traced in %s s",
+             number("%.1f", report->reference_ms / 1000).text);
   int top = y + CELL_HEAD;
   if (!draw_tile(pen, layout, report, x, top, report->reference_picture)) return 0;
   draw_legend(pen, x, top + layout->tile[1] + BETWEEN, layout->cell[0]);
@@ -284,8 +286,9 @@ static int draw(struct pen *pen, const struct layout *layout, const struct repor
   colour(pen, ink);
   write_line(pen, MARGIN, MARGIN + 22, width, 24, 1, "%s", report->title);
   colour(pen, faint);
-  write_line(pen, MARGIN, MARGIN + 47, width, 14.5, 0, "%s%s%s   penumbra %s", report->facts ? report->facts : "",
-             report->facts ? "   " : "", report->renderer ? report->renderer : "", report->version);
+  write_line(pen, MARGIN, MARGIN + 47, width, 14.5, 0, "%s", report->facts ? report->facts : "");
+  write_line(pen, MARGIN, MARGIN + 68, width, 14.5, 0, "%s%s%s   penumbra %s", report->sizes ? report->sizes : "",
+             report->sizes ? "   " : "", report->renderer ? report->renderer : "", report->version);
   int drawn = 1;
   for (int i = 0; drawn && i <= report->technique_count; i++) {
     int x = MARGIN + i % layout->columns * (layout->cell[0] + GAP),
