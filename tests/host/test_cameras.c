@@ -94,8 +94,10 @@ static void check_same_rays(const camera *view, const surfaces *seen, const floa
   assert_true(a.differing <= allowed_changes(a.range * delta));
   assert_int_equal(a.strays, 0);
   assert_true(b.sum / sample <= allowed_changes(b.range * delta / sample));
-  /* Moving less than a texel carries at most one column and one row of the 8 x 8 samples across a border. */
-  assert_true(b.worst <= 16 * sample);
+  /* Moving less than a texel carries at most one column and one row of the 8 x 8 samples across a border; but a texel
+   * that enters the search moves the blockers' mean w, and with it every sample. Such pixels lie where hard shadows
+   * change too, within what the baseline sees around them. */
+  assert_int_equal(b.strays, 0);
 }
 
 /* Other rays: what is seen at a point lies between what the baseline sees at the pixels around that point, give or take

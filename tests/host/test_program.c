@@ -88,12 +88,16 @@ static void compare_technique(host *h, const setting *s, const camera_view *v, c
   /* Two rasterisations of the same view, from matrices that were composed by different code: view_error each, of which
    * a step of the rasteriser's grid is the largest part. */
   agreement a = agree(ours, width, height, 0, 0, theirs, width, height, skip_pixel);
-  double delta = 2 * view_error(&v->view, seen), step = index == 2 ? 1.0 / 64 : index == 1 ? 1.0 / 25 : 1;
+  double delta = 2 * view_error(&v->view, seen), step = index == 1 ? 1.0 / 25 : 1;
   double allowed = allowed_changes(a.range * delta / step);
   printf("%s %s: %d of %d pixels differ, mean %.2g, worst %.2g; %d strays\n", directory, techniques[index], a.differing,
          a.pixels, a.sum / a.pixels, a.worst, a.strays);
   assert_true(a.range > 20); /* a shadow is there to be compared: on the model little of it lies on known planes */
-  assert_true(a.sum / step <= allowed);
+  /* pcss changes by up to 1 wherever one of its hundreds of search samples crosses into another texel, since the
+   * blockers' mean w then moves all of the filter: what is bounded is where (nowhere outside what the picture shows
+   * around) and, over all pixels, that it stays below one of its 64 filter samples by far. */
+  if (index == 2) assert_true(a.strays == 0 && a.sum / a.pixels < 1.0 / 64 / 8);
+  else assert_true(a.sum / step <= allowed);
   if (index == 0) assert_true(a.strays <= 4);
   free(skip_pixel), free(ours), free(theirs);
   pn_light_destroy(&light);

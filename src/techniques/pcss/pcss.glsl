@@ -21,12 +21,11 @@ vec2 pn_search_step(int light, highp sampler2DArray maps, pn_Receiver r, int n, 
     vec2 st = r.m.xy + at * window;
     int map = pn_map_at(light, st);
     vec3 q = pn_texel_point(light, maps, map, ivec2(floor(pn_map_texel(light, map, st))));
-    // What does not project onto the light itself blocks nothing, though it lies in the window of a nearer one.
-    // Where the whole window is narrower than a texel, as a sun's may be, its own texel is all there is.
-    vec2 narrow = max(0.5 / pn_lights[light].map_bounds[map].zw - window, 0.0);
-    vec2 reach = pn_search_window(pn_extent(light), q.z, r.m.z) + narrow;
+    // A texel that does not project onto the light blocks nothing, though it lies in the window of a nearer one.
+    vec2 reach = pn_search_window(pn_extent(light), q.z, r.m.z) + 0.5 / pn_lights[light].map_bounds[map].zw;
     if (!pn_blocks_apart(light, r, q) || any(greaterThan(abs(q.xy - r.m.xy), reach))) continue;
-    float weight = min(cell / ((q.z - r.m.z) * (q.z - r.m.z)), 1.0); // no sample hides more than the light
+    // All samples together hide no more than the light, also where they fall into one texel close before the receiver.
+    float weight = min(cell / ((q.z - r.m.z) * (q.z - r.m.z)), 1.0 / float(n * n));
     sum += weight * vec2(q.z, 1.0);
   }
   return sum;
