@@ -90,7 +90,6 @@ pn_result pn_mesh_add(pn_casters *casters, const pn_mesh_desc *desc, pn_mesh *ou
   if (!slot) return pn_leave(casters->object.context, PN_ERROR_OUT_OF_MEMORY);
   result = pn_mesh_build(gpu, desc, slot);
   if (result == PN_OK) out->id = slot->id = ++casters->next_id;
-  casters->revision++;
   return pn_leave(casters->object.context, result);
 }
 
@@ -114,7 +113,6 @@ pn_result pn_mesh_moved(pn_casters *casters, pn_mesh mesh, const pn_span *positi
     return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_BOUNDS, "bounds are inverted or not finite");
   pn_enter(casters->object.context);
   pn_result result = pn_mesh_deform(gpu, data, positions, bounds);
-  casters->revision++;
   return pn_leave(casters->object.context, result);
 }
 
@@ -128,7 +126,6 @@ pn_result pn_mesh_remove(pn_casters *casters, pn_mesh mesh) {
   casters->instance_count = kept;
   pn_enter(casters->object.context);
   pn_mesh_drop(gpu_of(casters), data, false);
-  casters->revision++;
   return pn_leave(casters->object.context, PN_OK);
 }
 
@@ -161,7 +158,6 @@ pn_result pn_instance_add(pn_casters *casters, pn_mesh mesh, const float transfo
     return PN_ERROR_OUT_OF_MEMORY;
   casters->instances[casters->instance_count++] =
       (pn_instance_data){++casters->next_id, (int)(data - casters->meshes), group, pn_matrix_from_floats(transform)};
-  casters->revision++;
   if (out) out->id = casters->next_id;
   return PN_OK;
 }
@@ -180,7 +176,6 @@ pn_result pn_instance_move(pn_casters *casters, pn_instance instance, const floa
   pn_result result = check_transform(gpu_of(casters), transform);
   if (result != PN_OK) return result;
   data->scene_from_object = pn_matrix_from_floats(transform);
-  casters->revision++;
   return PN_OK;
 }
 
@@ -191,7 +186,6 @@ pn_result pn_instance_remove(pn_casters *casters, pn_instance instance) {
   ptrdiff_t at = data - casters->instances;
   memmove(data, data + 1, (size_t)(casters->instance_count - at - 1) * sizeof *data);
   casters->instance_count--;
-  casters->revision++;
   return PN_OK;
 }
 
@@ -209,7 +203,6 @@ pn_result pn_casters_draw(pn_casters *casters, int group, pn_draw_fn draw, void 
   callback->draw = draw;
   callback->user = user;
   if (draw) memcpy(&callback->bounds, bounds, sizeof callback->bounds);
-  casters->revision++;
   return PN_OK;
 }
 

@@ -50,7 +50,6 @@ struct pn_casters {
   int instance_count, instance_capacity;
   uint32_t next_id;
   pn_callback callbacks[PN_GROUP_COUNT];
-  uint64_t revision; /* counts every change */
 };
 
 pn_mesh_data *pn_find_mesh(const pn_casters *casters, uint32_t id);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "gl/embedded.h"
+#include "gl/state.h"
 #include "gl/text.h"
 
 /* ---- sources: embedded, or files of the host's directory --------------------------------------------------------- */
@@ -172,7 +173,7 @@ GLint pn_uniform(const pn_program *program, const char *name) {
 }
 
 /* Samplers have fixed units all over the library, so they are set once. */
-static void set_samplers(pn_gpu *gpu, const pn_program *program, GLint binding) {
+static void set_samplers(pn_gpu *gpu, const pn_program *program) {
   static const struct {
     const char *name;
     int unit;
@@ -187,7 +188,7 @@ static void set_samplers(pn_gpu *gpu, const pn_program *program, GLint binding) 
   for (size_t i = 0; i < sizeof samplers / sizeof *samplers; i++)
     GL(gpu, Uniform1i)(pn_uniform(program, samplers[i].name), samplers[i].unit);
   GLuint block = GL(gpu, GetUniformBlockIndex)(program->id, "pn_block");
-  if (block != GL_INVALID_INDEX) GL(gpu, UniformBlockBinding)(program->id, block, (GLuint)binding);
+  if (block != GL_INVALID_INDEX) GL(gpu, UniformBlockBinding)(program->id, block, PN_BLOCK_BINDING);
   GL(gpu, UseProgram)((GLuint)before);
 }
 
@@ -200,7 +201,7 @@ static pn_result build(pn_gpu *gpu, const pn_program_key *key, pn_program *progr
   if (fragment) GL(gpu, DeleteShader)(fragment);
   if (result != PN_OK) return result;
   find_uniforms(gpu, program);
-  set_samplers(gpu, program, 0);
+  set_samplers(gpu, program);
   return PN_OK;
 }
 

@@ -9,6 +9,23 @@ typedef enum { PN_HIERARCHY_MSSM, PN_HIERARCHY_HSM, PN_HIERARCHY_NONE } pn_hiera
 
 extern const char *const pn_hierarchy_names[];
 
+/* Rows of a technique's table. source: where its paper speaks of it. */
+#define PN_PARAMETER_HIERARCHY(source) \
+  {"hierarchy", "", "what narrows the search: range stack, range pyramid, nothing; with merge above 0 the pyramid", \
+   source, PN_CHOICE, 0, 2, PN_HIERARCHY_MSSM, pn_hierarchy_names}
+#define PN_PARAMETER_CAP(source) \
+  {"cap", "texels", "at most N x N primitives a pixel, coarser ones past it; 0 = no cap; with merge=0 only", source, \
+   PN_INT, 0, 4096, 0, NULL}
+#define PN_PARAMETER_MERGE \
+  {"merge", "%", \
+   "blocks are one primitive where that moves no edge by more than this part of the light; 0 = every texel", "", \
+   PN_FLOAT, 0, 50, 1, NULL}
+#define PN_PARAMETER_EDGES \
+  {"edges", "", \
+   "quads that lack a corner are covered by the parts of the others: thin things keep their shadow; off = as in the " \
+   "paper", \
+   "", PN_BOOL, 0, 1, 1, NULL}
+
 typedef struct {
   pn_primitive primitive;
   pn_hierarchy hierarchy;

@@ -4,8 +4,8 @@
 //   PN_PRIMITIVE  what a texel stands for, see primitive.glsl
 //   PN_GAPS       patches are widened to meet their left and lower neighbours
 //   PN_EDGES      quads that lack a corner are covered by the parts that belong to the others
-// PN_DESCENT    1: adaptive descent of the range pyramid; 0: every texel of the window, or of a coarser level past
-// the cap
+//   PN_DESCENT    1: adaptive descent of the range pyramid; 0: every texel of the window, or of a coarser level past
+//                 the cap
 //   PN_REFINE     what narrows the window first: 0 nothing, 1 the range pyramid, 2 the range stack
 #include "search/window.glsl"
 

@@ -25,18 +25,10 @@ static const pn_parameter parameters[COUNT] = {
               MAPS_TWO_SIDED, maps},
     [LAYERS] = {"layers", "", "how many layers are peeled, with maps=layers", "section 3.2", PN_INT, 1, PN_LAYERS_MAX,
                 2, NULL},
-    [HIERARCHY] = {"hierarchy", "",
-                   "what narrows the search: range stack, range pyramid, nothing; with merge above 0 the pyramid",
-                   "section 5", PN_CHOICE, 0, 2, PN_HIERARCHY_MSSM, pn_hierarchy_names},
-    [CAP] = {"cap", "texels", "at most N x N primitives a pixel, coarser ones past it; 0 = no cap; with merge=0 only",
-             "section 7", PN_INT, 0, 4096, 0, NULL},
-    [MERGE] = {"merge", "%",
-               "blocks are one primitive where that moves no edge by more than this part of the light; 0 = every texel",
-               "", PN_FLOAT, 0, 50, 1, NULL},
-    [EDGES] = {"edges", "",
-               "quads that lack a corner are covered by the parts of the others: thin things keep their shadow; off = "
-               "as in the paper",
-               "", PN_BOOL, 0, 1, 1, NULL},
+    [HIERARCHY] = PN_PARAMETER_HIERARCHY("section 5"),
+    [CAP] = PN_PARAMETER_CAP("section 7"),
+    [MERGE] = PN_PARAMETER_MERGE,
+    [EDGES] = PN_PARAMETER_EDGES,
 };
 
 static void preset(int choice, double *values) {
