@@ -49,7 +49,7 @@ static void close_context(pn_context **handle, bool abandon) {
   *handle = NULL;
   free_objects(context, abandon);
   free_forward_texts(context);
-  pn_uniform_buffer_free(&context->gpu, &context->forward_block, abandon);
+  pn_buffer_free(&context->gpu, &context->forward_block, abandon);
   pn_gpu_close(&context->gpu, abandon);
   pn_gpu gpu = context->gpu; /* the allocator outlives the memory it frees */
   pn_free(&gpu, context);

@@ -119,6 +119,9 @@
 /* Newer than 3.3, or an extension: NULL where the context has them not. */
 #define PN_GL_OPTIONAL(X) \
   X(PFNGLCLIPCONTROLPROC, ClipControl) \
+  X(PFNGLBLENDEQUATIONSEPARATEIPROC, BlendEquationSeparatei) \
+  X(PFNGLBLENDFUNCSEPARATEIPROC, BlendFuncSeparatei) \
+  X(PFNGLDRAWARRAYSINDIRECTPROC, DrawArraysIndirect) \
   X(PFNGLDEPTHRANGEINDEXEDPROC, DepthRangeIndexed) \
   X(PFNGLSCISSORINDEXEDPROC, ScissorIndexed) \
   X(PFNGLVIEWPORTINDEXEDFPROC, ViewportIndexedf) \

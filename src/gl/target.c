@@ -42,6 +42,8 @@ static const format_info formats[] = {
     {GL_R32F, GL_RED, GL_FLOAT, 4, 1},
     {GL_RG32F, GL_RG, GL_FLOAT, 8, 2},
     {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16, 4},
+    {GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8, 2},
+    {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16, 4},
     {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, 2, 1},
     {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, 4, 1},
     {GL_DEPTH_COMPONENT32, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, 4, 1},
@@ -187,6 +189,7 @@ pn_result pn_pass_begin(pn_gpu *gpu, const pn_pass *pass) {
   if (result != PN_OK) return result;
   pn_set_viewport(gpu, 0, 0, pass->width, pass->height);
   set_depth(gpu, pass);
+  pn_set_blend(gpu, pass->blend);
   if (pass->faces == PN_FACES_FRONT || pass->faces == PN_FACES_BACK) {
     GL(gpu, Enable)(GL_CULL_FACE);
     GL(gpu, CullFace)(pass->faces == PN_FACES_FRONT ? GL_BACK : GL_FRONT);
@@ -205,23 +208,59 @@ pn_result pn_screen_begin(pn_gpu *gpu, const pn_pass *pass, const pn_program *pr
   return result;
 }
 
-/* ---- uniform buffers --------------------------------------------------------------------------------------------- */
+/* ---- buffers ----------------------------------------------------------------------------------------------------- */
 
-pn_result pn_uniform_buffer_set(pn_gpu *gpu, pn_uniform_buffer *buffer, const void *data, size_t bytes) {
-  if (!buffer->id) {
-    pn_result result = pn_memory_take(gpu, bytes);
-    if (result != PN_OK) return result;
-    GL(gpu, GenBuffers)(1, &buffer->id);
-    buffer->bytes = bytes;
-  }
+static pn_result buffer_make(pn_gpu *gpu, pn_buffer *buffer, size_t bytes) {
+  if (buffer->id) return PN_OK;
+  pn_result result = pn_memory_take(gpu, bytes);
+  if (result != PN_OK) return result;
+  GL(gpu, GenBuffers)(1, &buffer->id);
+  buffer->bytes = bytes;
+  return PN_OK;
+}
+
+pn_result pn_uniform_buffer_set(pn_gpu *gpu, pn_buffer *buffer, const void *data, size_t bytes) {
+  pn_result result = buffer_make(gpu, buffer, bytes);
+  if (result != PN_OK) return result;
   GL(gpu, BindBuffer)(GL_UNIFORM_BUFFER, buffer->id);
   GL(gpu, BufferData)(GL_UNIFORM_BUFFER, (GLsizeiptr)bytes, data, GL_STREAM_DRAW);
   return PN_OK;
 }
 
-void pn_uniform_buffer_free(pn_gpu *gpu, pn_uniform_buffer *buffer, bool abandon) {
+void pn_buffer_free(pn_gpu *gpu, pn_buffer *buffer, bool abandon) {
   if (!buffer->id) return;
   if (!abandon) GL(gpu, DeleteBuffers)(1, &buffer->id);
   pn_memory_give(gpu, buffer->bytes);
   memset(buffer, 0, sizeof *buffer);
+}
+
+/* ---- draws that the GPU counts ----------------------------------------------------------------------------------- */
+
+void pn_read_from(pn_gpu *gpu, const pn_texture *texture, int level, int layer) {
+  GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, gpu->read_framebuffer);
+  GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, 0, 0);
+  if (texture->layers) GL(gpu, FramebufferTextureLayer)
+  (GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture->id, level, layer);
+  else GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture->id, level);
+  GL(gpu, ReadBuffer)(GL_COLOR_ATTACHMENT0);
+}
+
+pn_result pn_draw_counted(pn_gpu *gpu, const pn_texture *arguments, pn_buffer *buffer, int most) {
+  enum { BYTES = 16 }; /* four unsigned integers: GL's DrawArraysIndirectCommand */
+  GL(gpu, BindVertexArray)(gpu->vertex_array);
+  if (!gpu->can.indirect) {
+    GL(gpu, DrawArrays)(GL_TRIANGLES, 0, most);
+    return PN_OK;
+  }
+  bool fresh = !buffer->id;
+  pn_result result = buffer_make(gpu, buffer, BYTES);
+  if (result != PN_OK) return result;
+  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, buffer->id);
+  if (fresh) GL(gpu, BufferData)(GL_PIXEL_PACK_BUFFER, BYTES, NULL, GL_STREAM_DRAW);
+  pn_read_from(gpu, arguments, 0, 0);
+  GL(gpu, ReadPixels)(0, 0, 1, 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT, NULL);
+  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
+  GL(gpu, BindBuffer)(GL_DRAW_INDIRECT_BUFFER, buffer->id);
+  GL(gpu, DrawArraysIndirect)(GL_TRIANGLES, NULL);
+  return PN_OK;
 }

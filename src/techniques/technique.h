@@ -13,7 +13,7 @@ typedef struct {
   const pn_frame *frame;
   const double *values;     /* parameters, in the order of the table */
   pn_maps *maps;            /* drawn by pn_maps_update as the technique wanted them */
-  pn_uniform_buffer *block; /* the light's, bound */
+  pn_buffer *block; /* the light's, bound */
   pn_casters *casters;      /* of the last pn_maps_update; NULL when they are gone */
   uint32_t groups;
   const pn_region *visible; /* what that update was fitted to, or NULL */
