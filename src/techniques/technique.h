@@ -52,6 +52,6 @@ void pn_technique_defines(const pn_technique_class *technique, const double *val
 bool pn_parameter_set(const pn_technique *table, const char *name, double value, double *values, pn_message *message);
 
 extern const pn_technique_class pn_technique_hard, pn_technique_pcf, pn_technique_pcss, pn_technique_average,
-    pn_technique_backprojection, pn_technique_bitmask;
+    pn_technique_ssm, pn_technique_backprojection, pn_technique_bitmask;
 
 #endif
