@@ -44,14 +44,18 @@ float pn_hidden(vec3 m, bool sun) {
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  float visibility = 1.0;
+  float hidden = 0.0;
   if (pn_receives(pixel)) {
     pn_Surface s = pn_surface(pixel);
     pn_Receiver r = pn_receiver(0, s.p, s.error, s.n, s.sigma);
     if (!pn_unlit(0, r)) {
       float above = pn_area_above(pn_extent(0), r.n.xy, r.k);
-      visibility = above > 0.0 ? 1.0 - min(pn_hidden(r.m, pn_is_sun(0)) / above, 1.0) : 1.0;
+      if (above > 0.0) hidden = min(pn_hidden(r.m, pn_is_sun(0)) / above, 1.0);
     }
   }
-  pn_out = vec4(vec3(visibility), 1.0);
+#if PN_BOUND
+  pn_out = vec4(hidden, 0.0, 0.0, 1.0);
+#else
+  pn_out = vec4(vec3(1.0 - hidden), 1.0);
+#endif
 }

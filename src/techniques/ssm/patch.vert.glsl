@@ -4,6 +4,11 @@
 
 uniform highp sampler2D pn_work; // the list
 uniform highp sampler2D pn_alpha; // its limits
+#if PN_BOUND
+uniform highp sampler2DArray pn_range; // of the occluder maps
+uniform ivec4 pn_layer;
+flat out vec2 pn_neighbours;       // w of the right and the upper texel
+#endif
 uniform ivec4 pn_place;          // list's width, map, width and height of the soft shadow map
 flat out vec4 pn_rectangle;      // s0, t0, s1, t1
 flat out vec3 pn_served;         // w, serves receivers up to, above
@@ -16,6 +21,12 @@ void main() {
   float w = patch_texels.w;
   pn_rectangle = vec4(low, high);
   pn_served = vec3(w, limits.xy);
+#if PN_BOUND
+  ivec2 texel = ivec2(patch_texels.xy), last = textureSize(pn_range, 0).xy - 1;
+  pn_neighbours = vec2(texelFetch(pn_range, ivec3(min(texel + ivec2(1, 0), last), pn_layer.y), 0).r,
+                       texelFetch(pn_range, ivec3(min(texel + ivec2(0, 1), last), pn_layer.y), 0).r);
+  w = max(w, max(pn_neighbours.x, pn_neighbours.y));
+#endif
   // Soft Shadow Maps, section 3.3: up to where the farthest receiver in reach sees the patch before the light's edge.
   vec2 reach = pn_penumbra_extent(pn_extent(0), w, limits.z);
   // corners 0 1 2, 2 1 3

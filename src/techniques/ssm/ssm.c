@@ -312,6 +312,34 @@ static int accumulation(const pn_visibility_request *r) {
   return ACCUMULATE_BATCHED;
 }
 
+/* ---- what it leaves for the host --------------------------------------------------------------------------------- */
+
+static void hand_out(const scattering *s) {
+  pn_pair *pair = s->r->pair;
+  const pn_receiver_map_want *w = &pair->seen.want;
+  pair->soft = (pn_soft_shadow_map){.sides = s->r->maps->layers,
+                                    .layers = w->layers,
+                                    .s0 = (float)w->bounds[0],
+                                    .t0 = (float)w->bounds[1],
+                                    .s1 = (float)w->bounds[2],
+                                    .t1 = (float)w->bounds[3]};
+  pn_texture_image(s->soft, &pair->soft.image);
+}
+
+/* Eq. 3 instead of the shadow: how far the sums may be off because neighbouring micropatches overlap or part. */
+static pn_result draw_bound(const pn_visibility_request *r) {
+  pn_texture *soft = &r->pair->work[SSM_BOUND], *image = &r->pair->bound;
+  const pn_receiver_map_want *w = &r->pair->seen.want;
+  const pn_receiver_desc *view = &r->receiver->desc;
+  scattering s = {.r = r, .bound = true, .soft = soft};
+  pn_result result = pn_texture_shape(r->gpu, soft, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
+  if (result == PN_OK) result = pn_texture_shape(r->gpu, image, GL_R32F, view->width, view->height, 0, 1);
+  if (result == PN_OK) result = scatter_all(&s);
+  if (result == PN_OK) result = look_up(&s, (pn_attachment){image->id, image->target, 0, 0});
+  mark(&s, "bound");
+  return result;
+}
+
 /* ---- all of it --------------------------------------------------------------------------------------------------- */
 
 static pn_result shape(const pn_visibility_request *r, const pn_receiver_map_want *w, int accumulate) {
@@ -345,7 +373,8 @@ static pn_result draw(const pn_visibility_request *r) {
   if (result == PN_OK) result = scatter_all(&s);
   if (result == PN_OK) result = look_up(&s, r->target);
   mark(&s, "visibility");
-  return result;
+  if (result == PN_OK) hand_out(&s);
+  return result == PN_OK && r->gpu->debug & PN_DEBUG_BOUND ? draw_bound(r) : result;
 }
 
 const pn_technique_class pn_technique_ssm = {
