@@ -114,9 +114,10 @@ static bool place(const pn_visibility_request *r, const pn_region *seen, pn_rece
                                 .layers = (int)r->values[LAYERS]};
   for (int i = 0; i < 2; i++)
     if (!place_axis(r, seen, i, &out->bounds[i], &out->bounds[i + 2])) return false;
-  double span = fmax(seen->most[2] - seen->least[2], 1e-6 * fabs(seen->most[2]) + 1e-12);
-  out->w_least = seen->least[2] - 0.01 * span;
-  out->w_most = seen->most[2] + 0.01 * span;
+  /* Receivers in a plane that faces the light have no extent in w; the depth test needs one that floats resolve. */
+  double span = fmax(seen->most[2] - seen->least[2], 1e-3 * fabs(seen->most[2]) + 1e-12);
+  out->w_least = seen->least[2] - 0.1 * span;
+  out->w_most = seen->most[2] + 0.1 * span;
   return true;
 }
 
