@@ -5,7 +5,7 @@
 #include "context.h"
 #include "maps/receiver_map.h"
 
-enum { PN_WORK_MAX = 8 };
+enum { PN_WORK_MAX = 10 };
 
 typedef struct pn_pair {
   pn_object *light, *receiver;

@@ -63,10 +63,10 @@ static float *read_list(pn_pair *pair, int count) {
 
 static int gpu_total(scene *c, pn_pair *pair) {
   const pn_texture *t = &pair->work[SSM_COUNTS];
-  GLuint top[2] = {0};
+  GLuint top[4] = {0};
   (void)c;
   glBindTexture(GL_TEXTURE_2D, t->id);
-  glGetTexImage(GL_TEXTURE_2D, t->levels - 1, GL_RG_INTEGER, GL_UNSIGNED_INT, top);
+  glGetTexImage(GL_TEXTURE_2D, t->levels - 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT, top);
   return (int)top[0];
 }
 

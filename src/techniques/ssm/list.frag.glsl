@@ -30,10 +30,10 @@ void main() {
   ivec2 at = ivec2(0);
   pn_out = vec4(0.0);
   pn_limits = vec4(0.0);
-  if (k >= texelFetch(pn_work, at, level).r) return;
+  int found = k < texelFetch(pn_work, at, level).r ? 1 : 0;
   // Selections instead of jumps: pixels of one loop go down to different levels.
   bool down = true;
-  for (int i = 1; i < pn_levels.x; i++) {
+  for (int i = 1; i < pn_levels.x * found; i++) {
     uint own = texelFetch(pn_work, at, level).g;
     down = down && k >= own;
     if (down) {
@@ -42,8 +42,11 @@ void main() {
       at = pn_child(at, level, k);
     }
   }
-  pn_Patch p = pn_node(at, level);
-  float scale = float(1 << level);
-  pn_out = vec4(vec2(at) * scale, scale, p.w);
-  pn_limits = vec4(p.most, p.above, p.least, 1.0);
+  // A loop, not a condition: software GL runs through both sides of a condition, but not through a loop of no turns.
+  for (int i = 0; i < found; i++) {
+    pn_Patch p = pn_node(at, level);
+    float scale = float(1 << level);
+    pn_out = vec4(vec2(at) * scale, scale, p.w);
+    pn_limits = vec4(p.most, p.above, uintBitsToFloat(texelFetch(pn_work, at, level).b), 1.0);
+  }
 }

@@ -128,8 +128,11 @@ typedef struct {
   int accumulate;
   bool bound; /* the error's bound instead of the shadow */
   const pn_texture *soft;
+  int sum;              /* by batches: which of two images holds it */
   pn_attachment target; /* the layer of it that is summed up */
 } scattering;
+
+static bool by_batches(const scattering *s) { return s->accumulate == ACCUMULATE_BATCHED && !s->bound; }
 
 static pn_result begin_target(const scattering *s, pn_attachment target, pn_blend blend, bool clear) {
   pn_pass pass = {.color = {target}, .width = s->soft->width, .height = s->soft->height, .blend = blend};
@@ -140,7 +143,8 @@ static pn_result begin_target(const scattering *s, pn_attachment target, pn_blen
 }
 
 /* Everything set for drawing entries of the list that lies in the work textures. */
-static pn_result begin_patches(const scattering *s, const ssm_list *list, pn_attachment target, bool clear) {
+static pn_result begin_patches(const scattering *s, const ssm_list *list, pn_attachment target, bool clear, int first,
+                               int step) {
   pn_gpu *gpu = s->r->gpu;
   const pn_texture *work = s->r->pair->work;
   const pn_program *program;
@@ -148,8 +152,10 @@ static pn_result begin_patches(const scattering *s, const ssm_list *list, pn_att
   if (result == PN_OK) result = begin_target(s, target, PN_BLEND_ADD, clear);
   if (result != PN_OK) return result;
   GL(gpu, UseProgram)(program->id);
+  GLint order[4] = {first, step, 0, 0};
   GLint place[4] = {work[SSM_LIST].width, list->map, s->soft->width, s->soft->height};
   GLint layer[4] = {list->seen_layer, list->map * s->r->maps->layers + list->layer, 0, 0};
+  GL(gpu, Uniform4iv)(pn_uniform(program, "pn_order"), 1, order);
   GL(gpu, Uniform4iv)(pn_uniform(program, "pn_place"), 1, place);
   GL(gpu, Uniform4iv)(pn_uniform(program, "pn_layer"), 1, layer);
   pn_receiver_map_bind(gpu, &s->r->pair->seen, program);
@@ -159,51 +165,59 @@ static pn_result begin_patches(const scattering *s, const ssm_list *list, pn_att
   return PN_OK;
 }
 
-static pn_result draw_entries(const scattering *s, const ssm_list *list, pn_attachment target, bool clear, int first,
-                              int count) {
-  pn_result result = begin_patches(s, list, target, clear);
+/* Entries first, first + step, ... of the list. */
+typedef struct {
+  int first, step, count;
+} entry_range;
+
+static pn_result draw_entries(const scattering *s, const ssm_list *list, pn_attachment target, bool clear,
+                              entry_range range) {
+  pn_result result = begin_patches(s, list, target, clear, range.first, range.step);
   if (result != PN_OK) return result;
   GL(s->r->gpu, BindVertexArray)(s->r->gpu->vertex_array);
-  GL(s->r->gpu, DrawArrays)(GL_TRIANGLES, 6 * first, 6 * count);
+  GL(s->r->gpu, DrawArrays)(GL_TRIANGLES, 0, 6 * range.count);
   return PN_OK;
 }
 
-/* The batch onto the sum. */
-static pn_result add_batch(const scattering *s) {
+/* The batch and the sum so far, into the other of two images: nothing is blended. */
+static pn_result add_batch(scattering *s) {
   pn_gpu *gpu = s->r->gpu;
-  const pn_texture *batch = &s->r->pair->work[SSM_BATCH];
+  const pn_texture *work = s->r->pair->work, *batch = &work[SSM_BATCH];
+  const pn_texture *from = &work[SSM_SUM + s->sum], *to = &work[SSM_SUM + !s->sum];
   const pn_program *program;
   pn_result result = add_program(gpu, &program);
-  if (result == PN_OK) result = begin_target(s, s->target, PN_BLEND_ADD, false);
+  if (result == PN_OK) result = begin_target(s, (pn_attachment){to->id, to->target, 0, 0}, PN_BLEND_NONE, false);
   if (result != PN_OK) return result;
   GL(gpu, UseProgram)(program->id);
-  pn_bind_texture(gpu, PN_UNIT_WORK, batch->target, batch->id, false);
+  pn_bind_texture(gpu, PN_UNIT_WORK, from->target, from->id, false);
+  pn_bind_texture(gpu, PN_UNIT_ALPHA, batch->target, batch->id, false);
   pn_draw_screen(gpu);
+  s->sum = !s->sum;
   return PN_OK;
 }
 
-/* Appendix A's way round 16 bits: about sqrt(M) micropatches are summed up aside before they meet the large sum, so that both
- * sums have few, comparable terms. */
-static pn_result draw_batches(const scattering *s, const ssm_list *list, int total, int count) {
+/* Appendix A's way round 16 bits: about sqrt(M) micropatches are summed up aside before they meet the rest. Neighbours
+ * in the list cover the same texels, so a batch takes every sqrt(M)-th: what meets in a texel of it is few. */
+static pn_result draw_batches(scattering *s, const ssm_list *list, int total, int count) {
   const pn_texture *batch = &s->r->pair->work[SSM_BATCH];
-  int size = (int)ceil(sqrt(total));
+  pn_attachment aside = {batch->id, batch->target, 0, 0};
+  int step = (int)ceil(sqrt(total));
   pn_result result = PN_OK;
-  for (int first = 0; first < count && result == PN_OK; first += size) {
-    int part = count - first < size ? count - first : size;
-    result = draw_entries(s, list, (pn_attachment){batch->id, batch->target, 0, 0}, true, first, part);
+  for (int first = 0; first < step && first < count && result == PN_OK; first++) {
+    entry_range range = {first, step, (count - first + step - 1) / step};
+    result = draw_entries(s, list, aside, true, range);
     if (result == PN_OK) result = add_batch(s);
   }
   return result;
 }
 
 /* What lies in the list's textures: total micropatches in all lists, or -1 where only the GPU knows. */
-static pn_result draw_list(const scattering *s, const ssm_list *list, int total) {
+static pn_result draw_list(scattering *s, const ssm_list *list, int total) {
   const pn_visibility_request *r = s->r;
   int size = ssm_list_size(r->maps), left = total - list->first;
-  if (total >= 0 && s->accumulate == ACCUMULATE_BATCHED && !s->bound)
-    return draw_batches(s, list, total, left < size ? left : size);
-  if (total >= 0) return draw_entries(s, list, s->target, false, 0, left < size ? left : size);
-  pn_result result = begin_patches(s, list, s->target, false);
+  if (total >= 0 && by_batches(s)) return draw_batches(s, list, total, left < size ? left : size);
+  if (total >= 0) return draw_entries(s, list, s->target, false, (entry_range){0, 1, left < size ? left : size});
+  pn_result result = begin_patches(s, list, s->target, false, 0, 1);
   return result == PN_OK ? pn_draw_counted(r->gpu, &r->pair->work[SSM_ARGUMENTS], &r->pair->arguments, 6 * size)
                          : result;
 }
@@ -212,11 +226,10 @@ static void mark(const scattering *s, const char *stage) {
   pn_clock_mark(s->r->gpu, &s->r->pair->clock, s->bound ? "bound" : stage);
 }
 
-static pn_result scatter_gpu(const scattering *s, ssm_list *list) {
+static pn_result scatter_gpu(scattering *s, ssm_list *list) {
   int total = -1, most = ssm_list_most(s->r->maps);
   pn_result result = ssm_gpu_count(list);
-  bool batched = s->accumulate == ACCUMULATE_BATCHED;
-  if (result == PN_OK && batched) result = ssm_gpu_total(list, &total);
+  if (result == PN_OK && by_batches(s)) result = ssm_gpu_total(list, &total);
   if (total >= 0) most = total;
   for (; list->first < most && result == PN_OK; list->first += ssm_list_size(s->r->maps)) {
     result = ssm_gpu_list(list);
@@ -227,7 +240,7 @@ static pn_result scatter_gpu(const scattering *s, ssm_list *list) {
   return result;
 }
 
-static pn_result scatter_cpu(const scattering *s, ssm_list *list) {
+static pn_result scatter_cpu(scattering *s, ssm_list *list) {
   float *entries;
   int total;
   pn_result result = ssm_cpu_list(list, &entries, &total);
@@ -241,11 +254,27 @@ static pn_result scatter_cpu(const scattering *s, ssm_list *list) {
   return result;
 }
 
+static pn_result begin_sum(scattering *s) {
+  const pn_texture *sum = &s->r->pair->work[SSM_SUM];
+  s->sum = 0;
+  pn_attachment target = by_batches(s) ? (pn_attachment){sum->id, sum->target, 0, 0} : s->target;
+  return begin_target(s, target, PN_BLEND_NONE, true);
+}
+
+static void end_sum(const scattering *s) {
+  pn_gpu *gpu = s->r->gpu;
+  if (!by_batches(s)) return;
+  pn_read_from(gpu, &s->r->pair->work[SSM_SUM + s->sum], 0, 0);
+  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
+  GL(gpu, BindTexture)(s->soft->target, s->soft->id);
+  GL(gpu, CopyTexSubImage3D)(s->soft->target, 0, 0, 0, s->target.layer, 0, 0, s->soft->width, s->soft->height);
+}
+
 /* One side's shadow on one layer of receivers. */
 static pn_result scatter(scattering *s, int side, int seen_layer) {
   const pn_maps *maps = s->r->maps;
   s->target = (pn_attachment){s->soft->id, s->soft->target, 0, side * s->r->pair->seen.want.layers + seen_layer};
-  pn_result result = begin_target(s, s->target, PN_BLEND_NONE, true);
+  pn_result result = begin_sum(s);
   for (int map = 0; map < maps->fit.tiles && result == PN_OK; map++) {
     ssm_list list = {.request = s->r,
                      .map = map,
@@ -254,6 +283,7 @@ static pn_result scatter(scattering *s, int side, int seen_layer) {
                      .share = s->bound ? 0 : s->r->values[MERGE] / 100};
     result = s->r->values[EXTENTS] == EXTENTS_CPU ? scatter_cpu(s, &list) : scatter_gpu(s, &list);
   }
+  if (result == PN_OK) end_sum(s);
   return result;
 }
 
@@ -345,11 +375,11 @@ static pn_result draw_bound(const pn_visibility_request *r) {
 
 static pn_result shape(const pn_visibility_request *r, const pn_receiver_map_want *w, int accumulate) {
   pn_texture *work = r->pair->work;
-  GLenum format = accumulate == ACCUMULATE_FP32 ? GL_R32F : GL_R16F;
+  GLenum format = accumulate == ACCUMULATE_FP16 ? GL_R16F : GL_R32F;
   pn_result result =
       pn_texture_shape(r->gpu, &work[SSM_SOFT], format, w->width, w->height, r->maps->layers * w->layers, 1);
-  if (result == PN_OK && accumulate == ACCUMULATE_BATCHED)
-    result = pn_texture_shape(r->gpu, &work[SSM_BATCH], format, w->width, w->height, 0, 1);
+  for (int i = SSM_BATCH; i < SSM_SOFT && result == PN_OK && accumulate == ACCUMULATE_BATCHED; i++)
+    result = pn_texture_shape(r->gpu, &work[i], i == SSM_BATCH ? GL_R16F : GL_R32F, w->width, w->height, 0, 1);
   return result == PN_OK ? ssm_gpu_shape(r) : result;
 }
 
