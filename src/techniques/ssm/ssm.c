@@ -32,14 +32,21 @@ static const pn_parameter parameters[COUNT] = {
     [SIZE] = {"size", "texels", "soft shadow map of N x N; 0 = as the occluder map", "Soft Shadow Maps, section 5.2.3",
               PN_INT, 0, PN_MAP_SIZE_MAX, 0, NULL},
     [LAYERS] = {"layers", "", "receivers told apart behind one another, as the light sees them",
-                "Soft Shadow Maps, section 7", PN_INT, 1, RECEIVER_LAYERS_MAX, 2, NULL},
+                "Soft Shadow Maps, section 7", PN_INT, 1, RECEIVER_LAYERS_MAX, 4, NULL},
 };
 
 static void preset(int choice, double *values) {
   for (int i = 0; i < COUNT; i++) values[i] = parameters[i].initial;
   values[PRESET] = choice;
-  if (choice == 0) values[MERGE] = 2;    /* fast */
-  if (choice == 2) values[MERGE] = 0.25; /* exact */
+  if (choice == 0) { /* fast */
+    values[MERGE] = 3;
+    values[SIZE] = 256;
+    values[LAYERS] = 3;
+  }
+  if (choice == 2) { /* exact */
+    values[MERGE] = 0.25;
+    values[LAYERS] = 6;
+  }
 }
 
 static bool has_front(const double *values) { return values[SIDES] != SIDES_BACK; }
