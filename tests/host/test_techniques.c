@@ -40,7 +40,7 @@ static int is_lit_around(const truth_light *light, int x, int y, int distance) {
 }
 
 static void check_lit(const char *spec, const truth_light *light, const float *image) {
-  int distance = strcmp(spec, "ssm") == 0 ? 2 : 0;
+  int distance = strcmp(spec, "ssm") == 0 ? 3 : 0;
   int lit = 0, wrong = 0;
   for (int i = 0; i < PIXELS; i += 7) {
     int x = i % CAMERA_WIDTH, y = i / CAMERA_WIDTH;
