@@ -446,10 +446,11 @@ typedef struct {
  * shadow. */
 PN_API pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver, pn_soft_shadow_map *out);
 
-/* Makes techniques tell what they did, as debug images of the view's size. flags: the sum of what is wanted, 0 at first.
+/* Makes techniques tell what they did, as debug images. flags: the sum of what is wanted, 0 at first.
  * PN_DEBUG_SEARCH  "search", of techniques that search: red = class (0 no map was asked, 1 lit, 2 umbra, 3 penumbra),
  *                  green = blocks visited, blue = primitives covered, alpha = texels in the search windows; costs a
- *                  second colour target
+ *                  second colour target. Of technique `ssm`: "covered", in the layers of the soft shadow map, how many
+ *                  micropatches came by each texel; costs another drawing
  * PN_DEBUG_BOUND   "bound", of technique `ssm`: how far visibility may be off because neighbouring micropatches overlap
  *                  or part (Soft Shadow Maps, Eq. 3); costs a drawing of every micropatch, unmerged */
 enum { PN_DEBUG_SEARCH = 1, PN_DEBUG_BOUND = 2 };
