@@ -21,6 +21,7 @@ typedef struct {
   int near_layers;                /* peeled layers from the nearest; 0..PN_LAYERS_MAX */
   bool farthest;                  /* the farthest surface, as the last layer */
   pn_faces near_faces, far_faces; /* which surfaces count: PN_FACES_ANY where it does not matter */
+  float focus;                    /* layers past the first hold only this share of the map's width and height; 0: all */
   pn_range_kind range;            /* what summarises every layer */
 } pn_maps_want;
 
@@ -39,8 +40,9 @@ typedef struct {
   pn_texture depth, range, peel[2], aside; /* aside: a level of the stack while it is drawn */
   pn_maps_want want;
   pn_fit_result fit;
-  int layers;           /* of each map */
-  pn_light_block block; /* all but the parameters */
+  int layers;                 /* of each map */
+  pn_light_block block;       /* all but the parameters */
+  pn_part later[PN_MAPS_MAX]; /* with want.focus: what layers past the first of each map hold */
   bool ready;
 } pn_maps;
 
@@ -55,6 +57,7 @@ typedef struct {
   uint32_t groups;
   int map; /* its place in the list */
   double bounds[4], w_near, w_far, shear[2];
+  pn_part later; /* with want.focus: the texels that layers past the first are drawn over */
 } pn_map_draw;
 pn_result pn_maps_draw(pn_gpu *gpu, pn_maps *maps, const pn_map_draw *draw);
 /* Fills pyramid or stack from what was drawn; the block must be bound. (maps/range.c) */

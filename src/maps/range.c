@@ -70,6 +70,31 @@ static pn_result begin(const range_step *s, pn_attachment target, int width, int
   return PN_OK;
 }
 
+/* The part of a level that differs from 'nothing there', where the layer holds only a part of the map. Over quads the
+ * texels before it see its first ones. */
+static pn_part part_of_level(const range_step *s, int width, int height) {
+  const pn_maps *maps = s->maps;
+  if (maps->want.focus <= 0 || s->layer % maps->layers == 0) return (pn_part){0, 0, width, height};
+  const pn_part *held = &maps->later[s->layer / maps->layers];
+  if (held->width == 0 || held->height == 0) return (pn_part){0};
+  int before = maps->want.range.quads ? 1 : 0;
+  int x = larger(held->x - before, 0) >> s->level, y = larger(held->y - before, 0) >> s->level;
+  int last_x = (held->x + held->width - 1) >> s->level, last_y = (held->y + held->height - 1) >> s->level;
+  return (pn_part){x, y, last_x - x + 1, last_y - y + 1};
+}
+
+/* Draws what is there, and clears the rest. */
+static void draw_part(const range_step *s, int width, int height) {
+  static const GLfloat nothing[4] = {-1e30f, -1e30f, 0, 1};
+  pn_part part = part_of_level(s, width, height);
+  if (part.width < width || part.height < height) {
+    GL(s->gpu, ClearBufferfv)(GL_COLOR, 0, nothing);
+    if (part.width == 0) return;
+    pn_pass_limit(s->gpu, &part);
+  }
+  pn_draw_screen(s->gpu);
+}
+
 static pn_result draw_pyramid(const range_step *s) {
   const pn_texture *range = &s->maps->range;
   const pn_program *program;
@@ -83,7 +108,7 @@ static pn_result draw_pyramid(const range_step *s) {
     GL(s->gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, s->level - 1);
     GL(s->gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, s->level - 1);
   }
-  pn_draw_screen(s->gpu);
+  draw_part(s, width, height);
   return PN_OK;
 }
 

@@ -13,6 +13,8 @@ pn_range_kind pn_search_range(const pn_search_values *v) {
   return (pn_range_kind){stack ? PN_RANGE_STACK : PN_RANGE_PYRAMID, v->primitive != PN_PRIMITIVE_PATCH};
 }
 
+float pn_search_focus(double percent) { return percent < 100 ? (float)(0.01 * percent) : 0; }
+
 int pn_search_defines(const pn_search_values *v, char *out, size_t size) {
   bool descent = descends(v);
   int refine = v->hierarchy == PN_HIERARCHY_NONE ? 0 : v->hierarchy == PN_HIERARCHY_MSSM && !descent ? 2 : 1;

@@ -79,11 +79,12 @@ static void look(const char *spec, bool wide, int width, int height) {
   stage_close(&s);
 }
 
-static const char *const kinds[] = {"bitmask:maps=two-sided,primitive=quad,merge=0,hierarchy=", "bitmask:maps=layers,layers=3,primitive=patch,merge=0,hierarchy="};
+static const char *const kinds[] = {"bitmask:maps=two-sided,primitive=quad,merge=0,hierarchy=", "bitmask:maps=layers,layers=3,primitive=patch,merge=0,hierarchy=",
+                                    "bitmask:maps=layers,layers=2,primitive=quad,focus=40,merge=0,hierarchy="};
 
 static void check(const char *hierarchy) {
   static const int sizes[][2] = {{1, 1}, {17, 17}, {16, 5}, {3, 20}};
-  for (int i = 0; i < 2; i++)
+  for (int i = 0; i < 3; i++)
     for (int wide = 0; wide < 2; wide++)
       for (int k = 0; k < 4; k++) {
         char spec[128];
