@@ -8,11 +8,12 @@ enum { PN_MAPS_MAX = 16, PN_LAYERS_MAX = 16, PN_PARAMETERS_MAX = 12 };
 
 /* Largest and smallest w of neighbourhoods: a pyramid (the papers' HSM: level i over blocks of 2^i texels a side) or
  * a stack (their MSSM: level i over the 2^i x 2^i texels centred on each texel, at full resolution). Over quads, each
- * texel brings its right and upper neighbours. */
+ * texel brings its right and upper neighbours. least_there, pyramids only: a third channel has the smallest w beside
+ * empty texels, 1e30 where all are. */
 typedef enum { PN_RANGE_NONE = 0, PN_RANGE_PYRAMID, PN_RANGE_STACK } pn_range_structure;
 typedef struct {
   pn_range_structure structure;
-  bool quads;
+  bool quads, least_there;
 } pn_range_kind;
 
 /* What a technique wants to have drawn. In the array texture, a map's layers are: near surfaces first, nearest to

@@ -25,7 +25,8 @@ pn_result pn_range_shape(pn_gpu *gpu, pn_texture *texture, const pn_range_kind *
                          int height) {
   if (kind->structure == PN_RANGE_PYRAMID) {
     int w = power_above(width), h = power_above(height);
-    return pn_texture_shape(gpu, texture, GL_RG32F, w, h, layers, level_count(larger(w, h)));
+    GLenum format = kind->least_there ? GL_RGBA32F : GL_RG32F;
+    return pn_texture_shape(gpu, texture, format, w, h, layers, level_count(larger(w, h)));
   }
   if (kind->structure == PN_RANGE_STACK)
     return pn_texture_shape(gpu, texture, GL_RG32F, width, height,
@@ -85,7 +86,7 @@ static pn_part part_of_level(const range_step *s, int width, int height) {
 
 /* Draws what is there, and clears the rest. */
 static void draw_part(const range_step *s, int width, int height) {
-  static const GLfloat nothing[4] = {-1e30f, -1e30f, 0, 1};
+  static const GLfloat nothing[4] = {-1e30f, -1e30f, 1e30f, 1};
   pn_part part = part_of_level(s, width, height);
   if (part.width < width || part.height < height) {
     GL(s->gpu, ClearBufferfv)(GL_COLOR, 0, nothing);
