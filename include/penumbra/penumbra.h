@@ -125,6 +125,7 @@ typedef enum {
   PN_MESSAGE_RESULT_TARGET,           /* the host's texture has the wrong size, format or layer */
   PN_MESSAGE_FORWARD,                 /* the technique has no forward form, or slots are out of range */
   PN_MESSAGE_FALLBACK,                /* information: a slower way is taken because the device lacks a feature */
+  PN_MESSAGE_STATE_MODE,              /* pn_context_desc.state is none of pn_state_mode */
   PN_MESSAGE_COUNT
 } pn_message;
 
