@@ -49,7 +49,7 @@ static void close_context(pn_context **handle, bool abandon) {
   *handle = NULL;
   free_objects(context, abandon);
   free_forward_texts(context);
-  pn_uniform_buffer_free(&context->gpu, &context->forward_block, abandon);
+  pn_buffer_free(&context->gpu, &context->forward_block, abandon);
   pn_gpu_close(&context->gpu, abandon);
   pn_gpu gpu = context->gpu; /* the allocator outlives the memory it frees */
   pn_free(&gpu, context);
@@ -119,9 +119,9 @@ pn_result pn_timing(pn_context *context, int enabled) {
   return PN_OK;
 }
 
-pn_result pn_debug(pn_context *context, int enabled) {
+pn_result pn_debug(pn_context *context, int flags) {
   if (!context) return PN_ERROR_ARGUMENT;
-  context->gpu.debug = enabled != 0;
+  context->gpu.debug = flags;
   return PN_OK;
 }
 

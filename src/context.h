@@ -25,7 +25,7 @@ struct pn_context {
   pn_gl_state saved; /* the host's state, while the library is at work */
   struct pn_pair *pairs;
   pn_forward_text *forward_texts;
-  pn_uniform_buffer forward_block;
+  pn_buffer forward_block;
 };
 
 /* Every public function that touches GL does so between these two. pn_leave returns result, so that a function ends

@@ -13,7 +13,7 @@ static void free_light(pn_object *object, bool abandon) {
   pn_gpu *gpu = pn_light_gpu(light);
   pn_pairs_drop(&light->object, abandon);
   pn_maps_free(gpu, &light->maps, abandon);
-  pn_uniform_buffer_free(gpu, &light->block, abandon);
+  pn_buffer_free(gpu, &light->block, abandon);
   pn_clock_free(gpu, &light->clock, abandon);
   pn_object_unlink(&light->object);
   pn_free(gpu, light);

@@ -12,7 +12,7 @@ struct pn_light {
   const pn_technique_class *technique;
   double values[PN_PARAMETERS_MAX];
   pn_maps maps;
-  pn_uniform_buffer block;
+  pn_buffer block;
   pn_casters *casters; /* of the last update; looked up before it is used, since it may be gone */
   uint32_t groups;
   pn_region visible;

@@ -15,14 +15,7 @@ static bool is_alive(const pn_context *context, const void *object) {
 static pn_result fill_with_light(pn_gpu *gpu, pn_attachment target, int width, int height) {
   pn_pass pass = {.color = {target}, .width = width, .height = height};
   pn_result result = pn_pass_begin(gpu, &pass);
-  static const GLfloat one[4] = {1, 1, 1, 1};
-  if (result == PN_OK) {
-    /* The host's own texture may be larger than the view: only the view is written. */
-    pn_set_switch(gpu, GL_SCISSOR_TEST, true);
-    pn_set_scissor(gpu, 0, 0, width, height);
-    GL(gpu, ClearBufferfv)(GL_COLOR, 0, one);
-    pn_set_switch(gpu, GL_SCISSOR_TEST, false);
-  }
+  if (result == PN_OK) pn_fill(gpu, width, height, 1);
   return result;
 }
 
@@ -30,14 +23,15 @@ static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pn_pair
   pn_gpu *gpu = pn_light_gpu(light);
   const pn_technique_class *technique = light->technique;
   pn_result result = PN_OK;
+  memset(&pair->soft, 0, sizeof pair->soft);
   if (light->maps.fit.empty) {
     result = fill_with_light(gpu, target, receiver->desc.width, receiver->desc.height);
     pn_clock_mark(gpu, &pair->clock, "visibility");
     return result;
   }
+  result = pn_light_bind_block(light);
+  if (result != PN_OK) return result;
   if (technique->shader) {
-    result = pn_light_bind_block(light);
-    if (result != PN_OK) return result;
     char defines[PN_TECHNIQUE_DEFINES];
     pn_technique_defines(technique, light->values, defines);
     pn_gathering gathering = {
@@ -112,6 +106,19 @@ pn_result pn_result_image(pn_light *light, pn_receiver *receiver, pn_image *out)
   return PN_OK;
 }
 
+pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver, pn_soft_shadow_map *out) {
+  if (!light) return PN_ERROR_ARGUMENT;
+  pn_gpu *gpu = pn_light_gpu(light);
+  if (!receiver || !out)
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
+                   "pn_soft_shadow_map_image: receiver or out is NULL");
+  pn_pair *pair = pn_pair_find(&light->object, &receiver->object);
+  if (!pair || !pair->soft.image.texture)
+    return pn_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "the pair's last result has no soft shadow map");
+  *out = pair->soft;
+  return PN_OK;
+}
+
 /* ---- into the host's texture ------------------------------------------------------------------------------------- */
 
 static void texture_extent(pn_gpu *gpu, GLenum target, pn_gl texture, GLint size[3]) {
@@ -174,6 +181,8 @@ int pn_debug_image(pn_light *light, pn_receiver *receiver, int index, const char
       {"range", &light->maps.range},
       {"low", pair ? &pair->low : NULL},
       {"search", pair ? &pair->search : NULL},
+      {"receivers", pair ? &pair->seen.layers : NULL},
+      {"bound", pair ? &pair->bound : NULL},
       {"visibility", pair ? &pair->image : NULL},
   };
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {

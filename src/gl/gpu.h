@@ -16,6 +16,8 @@ enum {
   PN_UNIT_WORK, /* whatever a technique keeps between its passes */
   PN_UNIT_PEEL,
   PN_UNIT_ALPHA,
+  PN_UNIT_SEEN,       /* the receiver map */
+  PN_UNIT_SEEN_RANGE, /* its range pyramid */
   PN_UNIT_COUNT
 };
 
@@ -26,6 +28,9 @@ typedef struct {
   bool viewports;     /* 4.1: one viewport, depth range and scissor test for each index */
   bool clip_control;  /* 4.5 or ARB_clip_control */
   bool robustness;    /* GetGraphicsResetStatus works */
+  bool float_blend;   /* 32-bit float images can be blended: all desktop GL can; OpenGL ES 3 needs an extension */
+  bool blend_buffers; /* 4.0: each draw buffer has its own blend function */
+  bool indirect;      /* 4.0 or ARB_draw_indirect: draws whose counts lie in a buffer */
   bool fixed_restart; /* GL_PRIMITIVE_RESTART_FIXED_INDEX, 4.3 */
   int texture_size_max, layers_max, draw_buffers, subpixel_bits, clip_distances, sample_mask_words;
 } pn_capabilities;
@@ -41,7 +46,7 @@ typedef struct pn_gpu {
 
   size_t memory; /* bytes in textures and buffers */
   bool timing;
-  bool debug; /* searches tell what they did */
+  int debug; /* PN_DEBUG_...: what techniques tell of what they did */
 
   pn_gl vertex_array; /* without attributes: full-screen triangles */
   pn_gl framebuffer;  /* the one the passes draw to */

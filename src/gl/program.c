@@ -178,9 +178,11 @@ static void set_samplers(pn_gpu *gpu, const pn_program *program) {
     const char *name;
     int unit;
   } samplers[] = {
-      {"pn_maps", PN_UNIT_MAPS},     {"pn_range", PN_UNIT_RANGE}, {"pn_depth", PN_UNIT_DEPTH},
-      {"pn_normal", PN_UNIT_NORMAL}, {"pn_mask", PN_UNIT_MASK},   {"pn_work", PN_UNIT_WORK},
+      {"pn_maps", PN_UNIT_MAPS},     {"pn_range", PN_UNIT_RANGE},
+      {"pn_depth", PN_UNIT_DEPTH},   {"pn_normal", PN_UNIT_NORMAL},
+      {"pn_mask", PN_UNIT_MASK},     {"pn_work", PN_UNIT_WORK},
       {"pn_peel_map", PN_UNIT_PEEL}, {"pn_alpha", PN_UNIT_ALPHA},
+      {"pn_seen", PN_UNIT_SEEN},     {"pn_seen_range", PN_UNIT_SEEN_RANGE},
   };
   GLint before = 0;
   GL(gpu, GetIntegerv)(GL_CURRENT_PROGRAM, &before);

@@ -18,6 +18,7 @@ static const GLenum switches[] = {
     GL_DITHER,
     GL_DEPTH_CLAMP,
     GL_SAMPLE_ALPHA_TO_ONE,
+    GL_PROGRAM_POINT_SIZE,
     GL_PRIMITIVE_RESTART_FIXED_INDEX, /* 4.3: last, so that older contexts leave it out */
 };
 enum { SWITCH_COUNT = sizeof switches / sizeof *switches };
@@ -58,6 +59,39 @@ void pn_set_switch(pn_gpu *gpu, GLenum name, bool on) {
   else GL(gpu, Disable)(name);
 }
 
+/* Blend functions of draw buffer 0 only, where each has its own (4.0). */
+static void set_blend_functions(pn_gpu *gpu, const GLint equation[2], const GLint function[4]) {
+  const GLenum e[2] = {(GLenum)equation[0], (GLenum)equation[1]};
+  const GLenum f[4] = {(GLenum)function[0], (GLenum)function[1], (GLenum)function[2], (GLenum)function[3]};
+  if (gpu->can.blend_buffers) {
+    GL(gpu, BlendEquationSeparatei)(0, e[0], e[1]);
+    GL(gpu, BlendFuncSeparatei)(0, f[0], f[1], f[2], f[3]);
+  } else {
+    GL(gpu, BlendEquationSeparate)(e[0], e[1]);
+    GL(gpu, BlendFuncSeparate)(f[0], f[1], f[2], f[3]);
+  }
+}
+
+void pn_set_blend(pn_gpu *gpu, pn_blend blend) {
+  if (blend == PN_BLEND_NONE) {
+    GL(gpu, Disablei)(GL_BLEND, 0);
+    return;
+  }
+  GLint equation = blend == PN_BLEND_MIN ? GL_MIN : GL_FUNC_ADD;
+  set_blend_functions(gpu, (GLint[2]){equation, equation}, (GLint[4]){GL_ONE, GL_ONE, GL_ONE, GL_ONE});
+  GL(gpu, Enablei)(GL_BLEND, 0);
+}
+
+static void save_blend_functions(pn_gpu *gpu, pn_gl_state *state) {
+  static const GLenum names[6] = {GL_BLEND_EQUATION_RGB, GL_BLEND_EQUATION_ALPHA, GL_BLEND_SRC_RGB,
+                                  GL_BLEND_DST_RGB,      GL_BLEND_SRC_ALPHA,      GL_BLEND_DST_ALPHA};
+  for (int i = 0; i < 6; i++) {
+    GLint *to = i < 2 ? &state->blend_equation[i] : &state->blend_function[i - 2];
+    if (gpu->can.blend_buffers) GL(gpu, GetIntegeri_v)(names[i], 0, to);
+    else GL(gpu, GetIntegerv)(names[i], to);
+  }
+}
+
 static void save_bindings(pn_gpu *gpu, pn_gl_state *state) {
   GL(gpu, GetIntegerv)(GL_CURRENT_PROGRAM, &state->program);
   GL(gpu, GetIntegerv)(GL_VERTEX_ARRAY_BINDING, &state->vertex_array);
@@ -67,6 +101,7 @@ static void save_bindings(pn_gpu *gpu, pn_gl_state *state) {
   GL(gpu, GetIntegerv)(GL_UNIFORM_BUFFER_BINDING, &state->uniform_buffer);
   GL(gpu, GetIntegerv)(GL_PIXEL_PACK_BUFFER_BINDING, &state->pixel_pack);
   GL(gpu, GetIntegerv)(GL_PIXEL_UNPACK_BUFFER_BINDING, &state->pixel_unpack);
+  if (gpu->can.indirect) GL(gpu, GetIntegerv)(GL_DRAW_INDIRECT_BUFFER_BINDING, &state->draw_indirect);
   GL(gpu, GetIntegeri_v)(GL_UNIFORM_BUFFER_BINDING, PN_BLOCK_BINDING, &state->block_buffer);
   GL(gpu, GetInteger64i_v)(GL_UNIFORM_BUFFER_START, PN_BLOCK_BINDING, &state->block_start);
   GL(gpu, GetInteger64i_v)(GL_UNIFORM_BUFFER_SIZE, PN_BLOCK_BINDING, &state->block_size);
@@ -105,6 +140,7 @@ static void save_raster(pn_gpu *gpu, pn_gl_state *state) {
     GL(gpu, GetBooleani_v)(GL_COLOR_WRITEMASK, (GLuint)i, state->color_mask[i]);
     state->blend[i] = GL(gpu, IsEnabledi)(GL_BLEND, (GLuint)i);
   }
+  save_blend_functions(gpu, state);
   for (int i = 0; i < clip_distances(gpu); i++) state->clip[i] = GL(gpu, IsEnabled)(GL_CLIP_DISTANCE0 + (GLenum)i);
   for (int i = 0; i < switch_count(gpu); i++) state->enabled[i] = GL(gpu, IsEnabled)(switches[i]);
 }
@@ -132,6 +168,7 @@ static void restore_bindings(pn_gpu *gpu, const pn_gl_state *state) {
   GL(gpu, BindBuffer)(GL_UNIFORM_BUFFER, (GLuint)state->uniform_buffer); /* after the indexed one, which sets it too */
   GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, (GLuint)state->pixel_pack);
   GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, (GLuint)state->pixel_unpack);
+  if (gpu->can.indirect) GL(gpu, BindBuffer)(GL_DRAW_INDIRECT_BUFFER, (GLuint)state->draw_indirect);
 }
 
 /* What the call deleted while it was bound stays unbound, as GL has it. */
@@ -174,6 +211,7 @@ static void restore_raster(pn_gpu *gpu, const pn_gl_state *state) {
     if (state->blend[i]) GL(gpu, Enablei)(GL_BLEND, (GLuint)i);
     else GL(gpu, Disablei)(GL_BLEND, (GLuint)i);
   }
+  set_blend_functions(gpu, state->blend_equation, state->blend_function);
   for (int i = 0; i < clip_distances(gpu); i++) pn_set_switch(gpu, GL_CLIP_DISTANCE0 + (GLenum)i, state->clip[i]);
   for (int i = 0; i < switch_count(gpu); i++) pn_set_switch(gpu, switches[i], state->enabled[i]);
 }
@@ -219,10 +257,12 @@ void pn_state_reset(pn_gpu *gpu) {
   GL(gpu, Enable)(GL_DITHER);
   GL(gpu, DepthMask)(GL_TRUE);
   GL(gpu, ClearDepth)(1);
+  set_blend_functions(gpu, (GLint[2]){GL_FUNC_ADD, GL_FUNC_ADD}, (GLint[4]){GL_ONE, GL_ZERO, GL_ONE, GL_ZERO});
   GL(gpu, UseProgram)(0);
   GL(gpu, BindVertexArray)(0);
   GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, 0);
   GL(gpu, BindFramebuffer)(GL_FRAMEBUFFER, 0);
+  if (gpu->can.indirect) GL(gpu, BindBuffer)(GL_DRAW_INDIRECT_BUFFER, 0);
   GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PN_BLOCK_BINDING, 0);
   for (int unit = PN_UNIT_COUNT; unit-- > 0;) { /* ends at unit 0, the default active one */
     GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);

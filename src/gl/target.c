@@ -42,6 +42,7 @@ static const format_info formats[] = {
     {GL_R32F, GL_RED, GL_FLOAT, 4, 1},
     {GL_RG32F, GL_RG, GL_FLOAT, 8, 2},
     {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16, 4},
+    {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16, 4},
     {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, 2, 1},
     {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, 4, 1},
     {GL_DEPTH_COMPONENT32, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, 4, 1},
@@ -120,6 +121,14 @@ pn_result pn_texture_shape(pn_gpu *gpu, pn_texture *texture, GLenum format, int 
   return PN_OK;
 }
 
+void pn_texture_write(pn_gpu *gpu, const pn_texture *texture, int width, int height, const void *pixels) {
+  const format_info *info = find_format(texture->format);
+  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
+  GL(gpu, BindTexture)(texture->target, texture->id);
+  GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, 0);
+  GL(gpu, TexSubImage2D)(texture->target, 0, 0, 0, width, height, info->layout, info->type, pixels);
+}
+
 void pn_texture_free(pn_gpu *gpu, pn_texture *texture, bool abandon) {
   if (!texture->id) return;
   if (!abandon) GL(gpu, DeleteTextures)(1, &texture->id);
@@ -187,6 +196,7 @@ pn_result pn_pass_begin(pn_gpu *gpu, const pn_pass *pass) {
   if (result != PN_OK) return result;
   pn_set_viewport(gpu, 0, 0, pass->width, pass->height);
   set_depth(gpu, pass);
+  pn_set_blend(gpu, pass->blend);
   if (pass->faces == PN_FACES_FRONT || pass->faces == PN_FACES_BACK) {
     GL(gpu, Enable)(GL_CULL_FACE);
     GL(gpu, CullFace)(pass->faces == PN_FACES_FRONT ? GL_BACK : GL_FRONT);
@@ -204,29 +214,73 @@ void pn_draw_screen(pn_gpu *gpu) {
   GL(gpu, DrawArrays)(GL_TRIANGLES, 0, 3);
 }
 
+void pn_fill(pn_gpu *gpu, int width, int height, float value) {
+  const GLfloat values[4] = {value, value, value, 1};
+  pn_set_switch(gpu, GL_SCISSOR_TEST, true);
+  pn_set_scissor(gpu, 0, 0, width, height);
+  GL(gpu, ClearBufferfv)(GL_COLOR, 0, values);
+  pn_set_switch(gpu, GL_SCISSOR_TEST, false);
+}
+
 pn_result pn_screen_begin(pn_gpu *gpu, const pn_pass *pass, const pn_program *program) {
   pn_result result = pn_pass_begin(gpu, pass);
   if (result == PN_OK) GL(gpu, UseProgram)(program->id);
   return result;
 }
 
-/* ---- uniform buffers --------------------------------------------------------------------------------------------- */
+/* ---- buffers ----------------------------------------------------------------------------------------------------- */
 
-pn_result pn_uniform_buffer_set(pn_gpu *gpu, pn_uniform_buffer *buffer, const void *data, size_t bytes) {
-  if (!buffer->id) {
-    pn_result result = pn_memory_take(gpu, bytes);
-    if (result != PN_OK) return result;
-    GL(gpu, GenBuffers)(1, &buffer->id);
-    buffer->bytes = bytes;
-  }
+static pn_result buffer_make(pn_gpu *gpu, pn_buffer *buffer, size_t bytes) {
+  if (buffer->id) return PN_OK;
+  pn_result result = pn_memory_take(gpu, bytes);
+  if (result != PN_OK) return result;
+  GL(gpu, GenBuffers)(1, &buffer->id);
+  buffer->bytes = bytes;
+  return PN_OK;
+}
+
+pn_result pn_uniform_buffer_set(pn_gpu *gpu, pn_buffer *buffer, const void *data, size_t bytes) {
+  pn_result result = buffer_make(gpu, buffer, bytes);
+  if (result != PN_OK) return result;
   GL(gpu, BindBuffer)(GL_UNIFORM_BUFFER, buffer->id);
   GL(gpu, BufferData)(GL_UNIFORM_BUFFER, (GLsizeiptr)bytes, data, GL_STREAM_DRAW);
   return PN_OK;
 }
 
-void pn_uniform_buffer_free(pn_gpu *gpu, pn_uniform_buffer *buffer, bool abandon) {
+void pn_buffer_free(pn_gpu *gpu, pn_buffer *buffer, bool abandon) {
   if (!buffer->id) return;
   if (!abandon) GL(gpu, DeleteBuffers)(1, &buffer->id);
   pn_memory_give(gpu, buffer->bytes);
   memset(buffer, 0, sizeof *buffer);
+}
+
+/* ---- draws that the GPU counts ----------------------------------------------------------------------------------- */
+
+void pn_read_from(pn_gpu *gpu, const pn_texture *texture, int level, int layer) {
+  GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, gpu->read_framebuffer);
+  GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, 0, 0);
+  if (texture->layers) GL(gpu, FramebufferTextureLayer)
+  (GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture->id, level, layer);
+  else GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture->id, level);
+  GL(gpu, ReadBuffer)(GL_COLOR_ATTACHMENT0);
+}
+
+pn_result pn_draw_counted(pn_gpu *gpu, const pn_texture *arguments, pn_buffer *buffer, int most) {
+  enum { BYTES = 16 }; /* four unsigned integers: GL's DrawArraysIndirectCommand */
+  GL(gpu, BindVertexArray)(gpu->vertex_array);
+  if (!gpu->can.indirect) {
+    GL(gpu, DrawArrays)(GL_TRIANGLES, 0, most);
+    return PN_OK;
+  }
+  bool fresh = !buffer->id;
+  pn_result result = buffer_make(gpu, buffer, BYTES);
+  if (result != PN_OK) return result;
+  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, buffer->id);
+  if (fresh) GL(gpu, BufferData)(GL_PIXEL_PACK_BUFFER, BYTES, NULL, GL_STREAM_DRAW);
+  pn_read_from(gpu, arguments, 0, 0);
+  GL(gpu, ReadPixels)(0, 0, 1, 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT, NULL);
+  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
+  GL(gpu, BindBuffer)(GL_DRAW_INDIRECT_BUFFER, buffer->id);
+  GL(gpu, DrawArraysIndirect)(GL_TRIANGLES, NULL);
+  return PN_OK;
 }

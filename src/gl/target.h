@@ -3,6 +3,7 @@
 #define PN_GL_TARGET_H
 
 #include "gl/program.h"
+#include "gl/state.h"
 
 typedef struct {
   pn_gl id; /* 0: none */
@@ -16,12 +17,17 @@ typedef struct {
  * array. */
 pn_result pn_texture_shape(pn_gpu *gpu, pn_texture *texture, GLenum format, int width, int height, int layers,
                            int levels);
+/* Writes the first width x height texels of a 2D texture; pixels in its format's own layout and type. */
+void pn_texture_write(pn_gpu *gpu, const pn_texture *texture, int width, int height, const void *pixels);
 void pn_texture_free(pn_gpu *gpu, pn_texture *texture, bool abandon);
 void pn_texture_image(const pn_texture *texture, pn_image *out);
 
 /* Binds a texture for the passes that follow, with the library's nearest sampler (or none: the texture's own
  * parameters). */
 void pn_bind_texture(pn_gpu *gpu, int unit, GLenum target, pn_gl texture, bool own_parameters);
+
+/* Makes level and layer of a colour texture what the next read of pixels reads. */
+void pn_read_from(pn_gpu *gpu, const pn_texture *texture, int level, int layer);
 
 /* One image to draw into: level 0.. of a texture, and a layer when it is an array. */
 typedef struct {
@@ -41,6 +47,7 @@ typedef struct {
   pn_faces faces;          /* 0 = any */
   GLdouble depth_range[2]; /* both 0: 0 to 1 */
   bool depth_clamp;
+  pn_blend blend; /* of color[0] */
 } pn_pass;
 
 /* Texels, from (x, y) on. */
@@ -53,16 +60,25 @@ pn_result pn_pass_begin(pn_gpu *gpu, const pn_pass *pass);
 void pn_pass_limit(pn_gpu *gpu, const pn_part *part);
 /* A triangle that covers the target. The program and its uniforms are set by the caller. */
 void pn_draw_screen(pn_gpu *gpu);
+/* One value in the pass's first colour image: the host's own texture may be larger than the view, only that is
+ * written. */
+void pn_fill(pn_gpu *gpu, int width, int height, float value);
 /* pn_pass_begin, the program in use: the usual start of a full-screen pass. */
 pn_result pn_screen_begin(pn_gpu *gpu, const pn_pass *pass, const pn_program *program);
 
+/* Draws triangles from gl_VertexID alone, as many vertices as a texel says that the GPU itself wrote: arguments is a
+ * 1 x 1 RGBA32UI texture with (count, 1, 0, 0), buffer receives them. Nothing is read back. Where the device has no
+ * indirect draws, most vertices are drawn, and the vertex shader has to put those past the count out of sight. */
+typedef struct pn_buffer pn_buffer;
+pn_result pn_draw_counted(pn_gpu *gpu, const pn_texture *arguments, pn_buffer *buffer, int most);
+
 /* A uniform buffer of the library's, updated whole. */
-typedef struct {
+struct pn_buffer {
   pn_gl id;
   size_t bytes;
-} pn_uniform_buffer;
-pn_result pn_uniform_buffer_set(pn_gpu *gpu, pn_uniform_buffer *buffer, const void *data, size_t bytes);
-void pn_uniform_buffer_free(pn_gpu *gpu, pn_uniform_buffer *buffer, bool abandon);
+};
+pn_result pn_uniform_buffer_set(pn_gpu *gpu, pn_buffer *buffer, const void *data, size_t bytes);
+void pn_buffer_free(pn_gpu *gpu, pn_buffer *buffer, bool abandon);
 
 /* Accounts for bytes in GL against the host's limit; pn_memory_give takes them off again. */
 pn_result pn_memory_take(pn_gpu *gpu, size_t bytes);

@@ -27,6 +27,10 @@ typedef struct {
   const pn_region *visible; /* receivers that casters must be able to shadow, or NULL */
 } pn_fit_request;
 
+/* Widens a range to whole steps of a grid that depends on its extent alone, so that what moves a little does not move
+ * the texels between. */
+void pn_fit_snap(double *low, double *high);
+
 void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_request *request, pn_fit_result *out);
 
 /* The texels of a tile that layers past the first are drawn over when they hold only this share of the fit's width and

@@ -47,7 +47,10 @@ pn_result pn_range_prepare(pn_gpu *gpu, const pn_range_kind *kind) {
   const pn_program *program;
   pn_result result = PN_OK;
   for (int first = 0; first < 2 && result == PN_OK && kind->structure; first++)
-    result = range_program(gpu, kind, first, &program);
+    result = range_program(gpu,
+                           &(pn_range_kind){.structure = kind->structure,
+                                            .quads = kind->quads && (first || kind->structure == PN_RANGE_STACK)},
+                           first, &program);
   return result;
 }
 
@@ -72,46 +75,62 @@ static pn_result begin(const range_step *s, pn_attachment target, int width, int
 }
 
 /* The part of a level that differs from 'nothing there', where the layer holds only a part of the map. Over quads the
- * texels before it see its first ones. */
-static pn_part part_of_level(const range_step *s, int width, int height) {
-  const pn_maps *maps = s->maps;
-  if (maps->want.focus <= 0 || s->layer % maps->layers == 0) return (pn_part){0, 0, width, height};
-  const pn_part *held = &maps->later[s->layer / maps->layers];
+ * texels before it see its first ones. maps NULL: all of it. */
+static pn_part part_of_level(const pn_maps *maps, int layer, int level, int width, int height) {
+  if (!maps || maps->want.focus <= 0 || layer % maps->layers == 0) return (pn_part){0, 0, width, height};
+  const pn_part *held = &maps->later[layer / maps->layers];
   if (held->width == 0 || held->height == 0) return (pn_part){0};
   int before = maps->want.range.quads ? 1 : 0;
-  int x = larger(held->x - before, 0) >> s->level, y = larger(held->y - before, 0) >> s->level;
-  int last_x = (held->x + held->width - 1) >> s->level, last_y = (held->y + held->height - 1) >> s->level;
+  int x = larger(held->x - before, 0) >> level, y = larger(held->y - before, 0) >> level;
+  int last_x = (held->x + held->width - 1) >> level, last_y = (held->y + held->height - 1) >> level;
   return (pn_part){x, y, last_x - x + 1, last_y - y + 1};
 }
 
-/* Draws what is there, and clears the rest. */
-static void draw_part(const range_step *s, int width, int height) {
+/* Draws the part, and clears the rest. */
+static void draw_part(pn_gpu *gpu, const pn_part *part, int width, int height) {
   static const GLfloat nothing[4] = {-1e30f, -1e30f, 1e30f, 1};
-  pn_part part = part_of_level(s, width, height);
-  if (part.width < width || part.height < height) {
-    GL(s->gpu, ClearBufferfv)(GL_COLOR, 0, nothing);
-    if (part.width == 0) return;
-    pn_pass_limit(s->gpu, &part);
+  if (part->width < width || part->height < height) {
+    GL(gpu, ClearBufferfv)(GL_COLOR, 0, nothing);
+    if (part->width == 0) return;
+    pn_pass_limit(gpu, part);
   }
-  pn_draw_screen(s->gpu);
+  pn_draw_screen(gpu);
 }
 
-static pn_result draw_pyramid(const range_step *s) {
-  const pn_texture *range = &s->maps->range;
+/* A pyramid's level from the one below: only that one may be read, so reading and drawing never meet. The shader then
+ * calls it level 0. */
+static pn_result reduce(pn_gpu *gpu, const pn_texture *range, const pn_maps *maps, int level, int layer) {
   const pn_program *program;
-  int width = larger(range->width >> s->level, 1), height = larger(range->height >> s->level, 1);
-  pn_attachment target = {range->id, range->target, s->level, s->layer};
-  pn_result result = begin(s, target, width, height, &program);
+  pn_result result = range_program(gpu, &(pn_range_kind){.structure = PN_RANGE_PYRAMID}, false, &program);
   if (result != PN_OK) return result;
-  /* only the level below may be read: reading and drawing never meet. The shader then calls it level 0 */
-  if (s->level > 0) {
-    pn_bind_texture(s->gpu, PN_UNIT_RANGE, range->target, range->id, true);
-    GL(s->gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, s->level - 1);
-    GL(s->gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, s->level - 1);
-  }
-  draw_part(s, width, height);
+  pn_pass pass = {.color = {{range->id, range->target, level, layer}},
+                  .width = larger(range->width >> level, 1),
+                  .height = larger(range->height >> level, 1)};
+  result = pn_screen_begin(gpu, &pass, program);
+  if (result != PN_OK) return result;
+  GLint source[4] = {layer, level, 0, 0};
+  pn_bind_texture(gpu, PN_UNIT_RANGE, range->target, range->id, true);
+  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, level - 1);
+  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, level - 1);
+  GL(gpu, Uniform4iv)(pn_uniform(program, "pn_source"), 1, source);
+  pn_part part = part_of_level(maps, layer, level, pass.width, pass.height);
+  draw_part(gpu, &part, pass.width, pass.height);
   return PN_OK;
 }
+
+/* maps: whose layers these are, where some may hold a part of the map only. */
+static pn_result reduce_all(pn_gpu *gpu, const pn_texture *range, const pn_maps *maps) {
+  pn_result result = PN_OK;
+  for (int level = 1; level < range->levels; level++)
+    for (int layer = 0; layer < range->layers && result == PN_OK; layer++)
+      result = reduce(gpu, range, maps, level, layer);
+  pn_bind_texture(gpu, PN_UNIT_RANGE, range->target, range->id, true);
+  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, 0);
+  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, range->levels - 1);
+  return result;
+}
+
+pn_result pn_range_reduce(pn_gpu *gpu, const pn_texture *range) { return reduce_all(gpu, range, NULL); }
 
 /* A stack's levels are layers of one array, which GL 3.3 does not let a pass read and draw at once: each is drawn
  * aside and copied in. */
@@ -146,13 +165,15 @@ static pn_result build_stack(pn_gpu *gpu, pn_maps *maps) {
 static pn_result build_pyramid(pn_gpu *gpu, pn_maps *maps) {
   const pn_texture *range = &maps->range;
   pn_result result = PN_OK;
-  for (int level = 0; level < range->levels; level++)
-    for (int layer = 0; layer < range->layers && result == PN_OK; layer++)
-      result = draw_pyramid(&(range_step){gpu, maps, layer, level});
-  pn_bind_texture(gpu, PN_UNIT_RANGE, range->target, range->id, true);
-  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, 0);
-  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, range->levels - 1);
-  return result;
+  for (int layer = 0; layer < range->layers && result == PN_OK; layer++) {
+    const pn_program *program;
+    pn_attachment target = {range->id, range->target, 0, layer};
+    result = begin(&(range_step){gpu, maps, layer, 0}, target, range->width, range->height, &program);
+    if (result != PN_OK) break;
+    pn_part part = part_of_level(maps, layer, 0, range->width, range->height);
+    draw_part(gpu, &part, range->width, range->height);
+  }
+  return result == PN_OK ? reduce_all(gpu, range, maps) : result;
 }
 
 pn_result pn_range_build(pn_gpu *gpu, pn_maps *maps) {

@@ -37,11 +37,8 @@ static pn_result step(pn_receiver *receiver, const pn_frame *frame, const pn_tex
 static void read_back(pn_gpu *gpu, const pn_texture images[2], pn_region *region) {
   float values[2][4];
   GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
-  GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, gpu->read_framebuffer);
-  GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, 0, 0);
   for (int i = 0; i < 2; i++) {
-    GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, images[i].id, 0);
-    GL(gpu, ReadBuffer)(GL_COLOR_ATTACHMENT0);
+    pn_read_from(gpu, &images[i], 0, 0);
     GL(gpu, ReadPixels)(0, 0, 1, 1, GL_RGBA, GL_FLOAT, values[i]);
   }
   GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);

@@ -41,11 +41,11 @@ static void bench_draw(bench *b, const pn_maps_want *want, int width, int height
   pn_block_map(&b->block, b->gpu, &b->draw, width, height);
   assert_ok(pn_maps_draw(b->gpu, &b->maps, &b->draw));
   if (want->range.structure) {
-    pn_uniform_buffer buffer = {0};
+    pn_buffer buffer = {0};
     assert_ok(pn_uniform_buffer_set(b->gpu, &buffer, &b->block, sizeof b->block));
     glBindBufferBase(GL_UNIFORM_BUFFER, PN_BLOCK_BINDING, buffer.id);
     assert_ok(pn_range_build(b->gpu, &b->maps));
-    pn_uniform_buffer_free(b->gpu, &buffer, false);
+    pn_buffer_free(b->gpu, &buffer, false);
   }
   pn_state_reset(b->gpu);
 }
