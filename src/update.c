@@ -28,15 +28,19 @@ static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, i
   return result;
 }
 
-static void fit_light(pn_light *light) {
+static pn_fit_request fit_request(const pn_light *light) {
   const pn_light_desc *d = &light->desc;
-  pn_fit_request request = {.frame = &light->frame,
-                            .near_distance = d->near_distance,
-                            .range = d->range,
-                            .width = d->map_width,
-                            .height = d->map_height,
-                            .given = d->fit == PN_FIT_GIVEN ? d->fit_bounds : NULL,
-                            .visible = light->has_visible ? &light->visible : NULL};
+  return (pn_fit_request){.frame = &light->frame,
+                          .near_distance = d->near_distance,
+                          .range = d->range,
+                          .width = d->map_width,
+                          .height = d->map_height,
+                          .given = d->fit == PN_FIT_GIVEN ? d->fit_bounds : NULL,
+                          .visible = light->has_visible ? &light->visible : NULL};
+}
+
+static void fit_light(pn_light *light) {
+  pn_fit_request request = fit_request(light);
   pn_fit_maps(light->casters, light->groups, &request, &light->maps.fit);
   if (!light->maps.fit.clamped || light->warned_angle) return;
   light->warned_angle = true;
@@ -44,8 +48,9 @@ static void fit_light(pn_light *light) {
           "the map would open past 170 degrees; casters beyond are left out");
 }
 
-static pn_map_draw tile_draw(const pn_light *light, int tile) {
+static pn_map_draw tile_draw(const pn_light *light, const pn_maps_want *want, int tile) {
   const pn_fit_result *fit = &light->maps.fit;
+  pn_fit_request request = fit_request(light);
   pn_map_draw draw = {.frame = &light->frame,
                       .casters = light->casters,
                       .groups = light->groups,
@@ -53,6 +58,7 @@ static pn_map_draw tile_draw(const pn_light *light, int tile) {
                       .w_near = fit->w_near,
                       .w_far = fit->w_far};
   memcpy(draw.bounds, fit->tile[tile], sizeof draw.bounds);
+  if (want->focus > 0) draw.later = pn_fit_focus(&request, fit, tile, want->focus);
   return draw;
 }
 
@@ -64,7 +70,7 @@ static pn_result draw_maps(pn_light *light, const pn_maps_want *want) {
   if (result != PN_OK) return result;
   pn_block_frame(&maps->block, &light->frame, gpu, maps->fit.tiles, maps->layers, width, height);
   for (int tile = 0; tile < maps->fit.tiles && result == PN_OK; tile++) {
-    pn_map_draw draw = tile_draw(light, tile);
+    pn_map_draw draw = tile_draw(light, want, tile);
     pn_block_map(&maps->block, gpu, &draw, width, height);
     result = pn_maps_draw(gpu, maps, &draw);
   }

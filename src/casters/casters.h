@@ -27,6 +27,7 @@ typedef struct {
   bool clockwise;
   pn_box *boxes;
   int box_count;
+  size_t box_triangles; /* each box is over that many of the triangles drawn, in order; 0: it says nothing of that */
 } pn_mesh_data;
 
 typedef struct {
@@ -61,6 +62,7 @@ void pn_casters_each_box(const pn_casters *casters, uint32_t groups, pn_box_visi
 /* Draws all casters of groups into the pass that has begun. */
 typedef struct {
   pn_matrix clip_from_scene;
+  pn_matrix cull_from_scene; /* the same, or of the part of the map that counts */
   uint32_t groups;
   pn_faces faces;
   pn_gl peel; /* the previous layer, or 0 */

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # The bars of bitmask soft shadows, in the standard set-up: 1024 x 768 pixels, maps of 512 x 512, 1024 rays.
-#   bitmask.sh PROGRAM [PART...]    parts: split self fusion samples merge; all of them without any
+#   bitmask.sh PROGRAM [PART...]    parts: split self fusion focus samples merge; all of them without any
 # PENUMBRA_BARS_SIZE: another picture size, to look sooner. Every result is printed; a bar that is missed fails.
 set -u
 program=$1
 shift
-parts=${*:-split self fusion samples merge}
+parts=${*:-split self fusion focus samples merge}
 size=${PENUMBRA_BARS_SIZE:-1024x768}
 small=${PENUMBRA_BARS_SIZE:-320x240} # where every scene is looked at
 bunny=/usr/share/glmark2/models/bunny.obj
@@ -48,6 +48,17 @@ if rows fusion; then
     bar "$scene: four layers" "$(value $scene $four_quads mae)" "a <= 0.012" 0
   done
   bar "silhouette-standing: four layers (a) beat two maps (b)" "$(value $scene $four_quads mae)" "a < b" "$(value $scene $quad mae)"
+fi
+
+if rows focus; then
+  all=bitmask:maps=layers,layers=4
+  for scene in $bunny builtin:balls builtin:silhouette builtin:boxes builtin:leaves builtin:room builtin:copies; do
+    name=${scene##*[:/]}
+    measure focus-$name "$small" $scene -t bitmask:maps=front -t $all,focus=50 -t $all,focus=75 -t $all
+    bar "$name: later layers over half of the map (a), one layer (b)" "$(value focus-$name $all,focus=50 mae)" "a <= b" "$(value focus-$name bitmask:maps=front mae)"
+    bar "$name: later layers over three quarters (a), over half (b)" "$(value focus-$name $all,focus=75 mae)" "a <= b" "$(value focus-$name $all,focus=50 mae)"
+    bar "$name: all of the later layers (a), three quarters (b)" "$(value focus-$name $all mae)" "a <= b + 0.0001" "$(value focus-$name $all,focus=75 mae)"
+  done
 fi
 
 if rows samples; then
