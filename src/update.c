@@ -1,4 +1,5 @@
 /* pn_maps_update: what casts, fitted and drawn. */
+#include <math.h>
 #include <string.h>
 
 #include "light.h"
@@ -28,7 +29,17 @@ static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, i
   return result;
 }
 
-static void fit_light(pn_light *light) {
+/* What is known of the receivers' w: of the visible ones, else of all the frusta. */
+static double least_receiver(const pn_light *light, const pn_maps_want *want, pn_receiver *const *receivers,
+                             int count) {
+  if (!want->reach || light->has_visible) return light->visible.least[2];
+  pn_region region = pn_region_empty();
+  for (int i = 0; i < count; i++)
+    if (receivers[i] && receivers[i]->set) pn_receiver_frustum(receivers[i], &light->frame, &region);
+  return count > 0 ? region.least[2] : -INFINITY;
+}
+
+static void fit_light(pn_light *light, const pn_maps_want *want, double w_reach) {
   const pn_light_desc *d = &light->desc;
   pn_fit_request request = {.frame = &light->frame,
                             .near_distance = d->near_distance,
@@ -36,7 +47,10 @@ static void fit_light(pn_light *light) {
                             .width = d->map_width,
                             .height = d->map_height,
                             .given = d->fit == PN_FIT_GIVEN ? d->fit_bounds : NULL,
-                            .visible = light->has_visible ? &light->visible : NULL};
+                            .visible = light->has_visible ? &light->visible : NULL,
+                            .reach = want->reach,
+                            .reach_width = want->reach_width,
+                            .w_reach = w_reach};
   pn_fit_maps(light->casters, light->groups, &request, &light->maps.fit);
   if (!light->maps.fit.clamped || light->warned_angle) return;
   light->warned_angle = true;
@@ -63,6 +77,7 @@ static pn_result draw_maps(pn_light *light, const pn_maps_want *want) {
   pn_result result = pn_maps_shape(gpu, maps, want, maps->fit.tiles, width, height);
   if (result != PN_OK) return result;
   pn_block_frame(&maps->block, &light->frame, gpu, maps->fit.tiles, maps->layers, width, height);
+  maps->block.extent[3] = (float)maps->fit.w_reach;
   for (int tile = 0; tile < maps->fit.tiles && result == PN_OK; tile++) {
     pn_map_draw draw = tile_draw(light, tile);
     pn_block_map(&maps->block, gpu, &draw, width, height);
@@ -71,8 +86,11 @@ static pn_result draw_maps(pn_light *light, const pn_maps_want *want) {
   pn_clock_mark(gpu, &light->clock, "depth_map");
   if (result != PN_OK || !want->range.structure) return result;
   result = pn_light_bind_block(light);
-  if (result == PN_OK) result = pn_range_build(gpu, maps);
-  pn_clock_mark(gpu, &light->clock, "range");
+  const pn_technique_class *technique = light->technique;
+  bool own = want->range.structure == PN_RANGE_OWN;
+  pn_build_request request = {gpu, &light->frame, light->values, maps, light->casters, light->groups};
+  if (result == PN_OK) result = own ? technique->build(&request) : pn_range_build(gpu, maps);
+  pn_clock_mark(gpu, &light->clock, own ? technique->stage : "range");
   return result;
 }
 
@@ -80,14 +98,14 @@ static pn_result update_maps(pn_light *light, pn_receiver *const *visible, int v
   pn_result result = pn_gpu_check_lost(pn_light_gpu(light));
   if (result == PN_OK) result = find_frusta(light, visible, visible_count);
   if (result != PN_OK) return result;
-  fit_light(light);
+  pn_maps_want want;
+  light->technique->want(light->values, &want);
+  fit_light(light, &want, least_receiver(light, &want, visible, visible_count));
   if (light->desc.fit == PN_FIT_VISIBLE && light->has_visible && !light->maps.fit.empty) {
     result = find_surfaces(light, visible, visible_count);
     if (result != PN_OK) return result;
-    fit_light(light);
+    fit_light(light, &want, least_receiver(light, &want, visible, visible_count));
   }
-  pn_maps_want want;
-  light->technique->want(light->values, &want);
   if (!light->maps.fit.empty && pn_want_layers(&want) > 0) result = draw_maps(light, &want);
   light->maps.ready = result == PN_OK;
   return result;

@@ -125,6 +125,10 @@ typedef enum {
   PN_MESSAGE_RESULT_TARGET,           /* the host's texture has the wrong size, format or layer */
   PN_MESSAGE_FORWARD,                 /* the technique has no forward form, or slots are out of range */
   PN_MESSAGE_FALLBACK,                /* information: a slower way is taken because the device lacks a feature */
+  /* information, once a mesh: edges that are open, shared by three and more faces, between faces wound against each
+   * other */
+  PN_MESSAGE_MESH_EDGES,
+  PN_MESSAGE_CASTER_MESHES,           /* warning: the technique needs meshes, and some casters have none */
   PN_MESSAGE_COUNT
 } pn_message;
 
@@ -370,7 +374,8 @@ typedef struct {
   const char *name, *unit, *help, *source; /* unit may be "", source is the paper's section or equation */
   pn_type type;
   double least, most, initial;  /* PN_CHOICE: 0 .. number of choices - 1 */
-  const char *const *choices;   /* PN_CHOICE: NULL-terminated; else NULL */
+  /* NULL-terminated. PN_CHOICE: its values by name. PN_FLOAT: one word that stands for the value least, or NULL */
+  const char *const *choices;
 } pn_parameter;
 
 typedef struct {

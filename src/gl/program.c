@@ -183,6 +183,10 @@ static void set_samplers(pn_gpu *gpu, const pn_program *program) {
       {"pn_mask", PN_UNIT_MASK},     {"pn_work", PN_UNIT_WORK},
       {"pn_peel_map", PN_UNIT_PEEL}, {"pn_alpha", PN_UNIT_ALPHA},
       {"pn_seen", PN_UNIT_SEEN},     {"pn_seen_range", PN_UNIT_SEEN_RANGE},
+      /* the passes over a mesh's edges see no receiver */
+      {"pn_edges", PN_UNIT_DEPTH},   {"pn_points", PN_UNIT_NORMAL},
+      {"pn_sides", PN_UNIT_MASK},    {"pn_rings", PN_UNIT_WORK},
+      {"pn_entries", PN_UNIT_PEEL},  {"pn_corners", PN_UNIT_ALPHA},
   };
   GLint before = 0;
   GL(gpu, GetIntegerv)(GL_CURRENT_PROGRAM, &before);

@@ -13,6 +13,7 @@ typedef struct {
   bool clamped;     /* opened past 170 degrees */
   double bounds[4]; /* s0, t0, s1, t1 */
   double w_near, w_far;
+  double w_reach; /* with reach: no receiver lies below */
   int tiles;
   double tile[PN_TILES_MAX][4]; /* with a border of one texel, except for a fit that is given */
 } pn_fit_result;
@@ -24,6 +25,10 @@ typedef struct {
   int width, height;
   const float *given;       /* PN_FIT_GIVEN's box, or NULL */
   const pn_region *visible; /* receivers that casters must be able to shadow, or NULL */
+  /* Cover what the casters can darken: the light's extent, or width map units, around them, where visible receivers
+   * are. w_reach: no receiver lies below; -INFINITY: not known. */
+  bool reach;
+  double reach_width, w_reach;
 } pn_fit_request;
 
 void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_request *request, pn_fit_result *out);

@@ -9,7 +9,12 @@ enum { PN_MAPS_MAX = 16, PN_LAYERS_MAX = 16, PN_PARAMETERS_MAX = 12 };
 /* Largest and smallest w of neighbourhoods: a pyramid (the papers' HSM: level i over blocks of 2^i texels a side) or
  * a stack (their MSSM: level i over the 2^i x 2^i texels centred on each texel, at full resolution). Over quads, each
  * texel brings its right and upper neighbours. */
-typedef enum { PN_RANGE_NONE = 0, PN_RANGE_PYRAMID, PN_RANGE_STACK } pn_range_structure;
+typedef enum {
+  PN_RANGE_NONE = 0,
+  PN_RANGE_PYRAMID,
+  PN_RANGE_STACK,
+  PN_RANGE_OWN /* the technique puts an image of its own in that place: see pn_technique_class.build */
+} pn_range_structure;
 typedef struct {
   pn_range_structure structure;
   bool quads;
@@ -22,6 +27,8 @@ typedef struct {
   bool farthest;                  /* the farthest surface, as the last layer */
   pn_faces near_faces, far_faces; /* which surfaces count: PN_FACES_ANY where it does not matter */
   pn_range_kind range;            /* what summarises every layer */
+  bool reach;                     /* maps cover what the casters can darken, not only the casters themselves */
+  double reach_width;             /* ... that is so far around them, map units; 0: as far as the light's size says */
 } pn_maps_want;
 
 /* The uniform block of maps.glsl, std140. */
