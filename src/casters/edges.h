@@ -46,7 +46,9 @@ typedef struct pn_mesh_edges {
   pn_texture edges, rings, entries; /* pn_edge, pn_ring, pn_ring_entry */
   pn_texture points;                /* of the last instance: positions in the light's frame */
   pn_texture sides;                 /* which edges are silhouettes, and on which side the mesh lies */
-  pn_texture corners;               /* for silhouettes: outward normals of their neighbours */
+  /* a technique's own, filled anew for each instance */
+  pn_texture corners, sums[3], total, list;
+  pn_buffer arguments;
   bool stale;                       /* positions changed */
 } pn_mesh_edges;
 

@@ -133,7 +133,6 @@ static pn_result upload(pn_gpu *gpu, const pn_edge_list *list, pn_mesh_edges *e)
   if (result == PN_OK) result = table(gpu, &e->entries, GL_RG32UI, GL_RG_INTEGER, list->entries, 2 * list->count, 8);
   if (result == PN_OK) result = pn_texture_shape(gpu, &e->points, GL_RGBA32F, PN_EDGE_ROW, points, 0, 1);
   if (result == PN_OK) result = pn_texture_shape(gpu, &e->sides, GL_R8, PN_EDGE_ROW, rows, 0, 1);
-  if (result == PN_OK) result = pn_texture_shape(gpu, &e->corners, GL_RGBA32F, PN_EDGE_ROW, rows, 0, 1);
   return result;
 }
 
@@ -161,7 +160,9 @@ pn_result pn_mesh_edges_get(pn_gpu *gpu, pn_mesh_data *mesh, pn_mesh_edges **out
 void pn_mesh_edges_free(pn_gpu *gpu, pn_mesh_edges **edges, bool abandon) {
   pn_mesh_edges *e = *edges;
   if (!e) return;
-  pn_texture *all[] = {&e->positions, &e->edges, &e->rings, &e->entries, &e->points, &e->sides, &e->corners};
+  pn_texture *all[] = {&e->positions, &e->edges, &e->rings, &e->entries, &e->points, &e->sides, &e->corners,
+                       &e->sums[0],   &e->sums[1], &e->sums[2], &e->total, &e->list};
+  pn_buffer_free(gpu, &e->arguments, abandon);
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) pn_texture_free(gpu, all[i], abandon);
   pn_free(gpu, e);
   *edges = NULL;

@@ -38,15 +38,12 @@ static pn_result edge_program(pn_gpu *gpu, const char *fragment, const pn_progra
   return pn_program_get(gpu, &key, out);
 }
 
-static const char *const points_shader = "casters/points.frag.glsl", *const sides_shader =
-                                                                         "casters/silhouette.frag.glsl",
-                         *const corners_shader = "casters/corner.frag.glsl";
+static const char *const points_shader = "casters/points.frag.glsl", *const sides_shader = "casters/silhouette.frag.glsl";
 
 pn_result pn_silhouettes_prepare(pn_gpu *gpu) {
   const pn_program *program;
   pn_result result = edge_program(gpu, points_shader, &program);
-  if (result == PN_OK) result = edge_program(gpu, sides_shader, &program);
-  return result == PN_OK ? edge_program(gpu, corners_shader, &program) : result;
+  return result == PN_OK ? edge_program(gpu, sides_shader, &program) : result;
 }
 
 void pn_silhouettes_bind(pn_gpu *gpu, const pn_program *program, const pn_mesh_edges *e, size_t count, bool sun,
@@ -96,11 +93,6 @@ pn_result pn_silhouettes_draw(pn_gpu *gpu, pn_mesh_edges *e, const pn_matrix *li
   if (result != PN_OK) return result;
   pn_silhouettes_bind(gpu, program, e, e->count, sun, cut);
   unbind(gpu, PN_UNIT_MASK);
-  pn_draw_screen(gpu);
-  result = begin(gpu, corners_shader, &e->corners, e->count, &program);
-  if (result != PN_OK) return result;
-  pn_silhouettes_bind(gpu, program, e, e->count, sun, cut);
-  unbind(gpu, PN_UNIT_ALPHA);
   pn_draw_screen(gpu);
   return PN_OK;
 }

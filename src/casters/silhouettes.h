@@ -9,7 +9,7 @@
 
 typedef enum { PN_SIDE_NONE = 0, PN_SIDE_RIGHT, PN_SIDE_LEFT } pn_side; /* where the mesh lies, walking along the edge */
 
-/* Fills the textures points, sides and corners of a mesh's edges for one instance. cut: pn_cut of edges.glsl. */
+/* Fills the textures points and sides of a mesh's edges for one instance. cut: pn_cut of edges.glsl. */
 pn_result pn_silhouettes_draw(pn_gpu *gpu, pn_mesh_edges *edges, const pn_matrix *light_from_object, bool sun,
                               float cut);
 /* Textures and uniforms for a program that includes casters/edges.glsl, in use; count: pn_count.x. */

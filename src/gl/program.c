@@ -187,6 +187,9 @@ static void set_samplers(pn_gpu *gpu, const pn_program *program) {
       {"pn_edges", PN_UNIT_DEPTH},   {"pn_points", PN_UNIT_NORMAL},
       {"pn_sides", PN_UNIT_MASK},    {"pn_rings", PN_UNIT_WORK},
       {"pn_entries", PN_UNIT_PEEL},  {"pn_corners", PN_UNIT_ALPHA},
+      {"pn_sums_low", PN_UNIT_WORK}, {"pn_sums_middle", PN_UNIT_PEEL},
+      {"pn_sums_high", PN_UNIT_SEEN}, {"pn_list", PN_UNIT_SEEN},
+      {"pn_total", PN_UNIT_RANGE},
   };
   GLint before = 0;
   GL(gpu, GetIntegerv)(GL_CURRENT_PROGRAM, &before);

@@ -1,11 +1,15 @@
-// What both stages of the smoothies know of a silhouette edge. In the map a smoothie lies at
+// What the passes that draw smoothies know of a silhouette edge. In the map its smoothie lies at
 //   P + tau (Q - P) + kappa x,   tau in 0..1, 0 <= kappa <= pn_reach(w),
 // P and Q the edge's ends and x the vector along which kappa counts: the outward normal n times A_n, or, for sheets,
 // the corner of the light's rectangle that lies farthest out.
 #include "maps/maps.glsl"
+#include "casters/edges.glsl"
 
-uniform highp ivec4 pn_mode;  // tile, 1 for cones
-uniform highp vec4 pn_width;  // fixed width in map units; 0: the light's
+uniform highp ivec4 pn_mode; // tile, 1 for cones
+uniform highp vec4 pn_width; // fixed width in map units; 0: the light's
+
+// The first component of pn_corners where an edge has no smoothie to draw.
+const float pn_no_smoothie = 9.0;
 
 bool pn_fixed() { return pn_width.x > 0.0; }
 bool pn_cones() { return pn_mode.y != 0; }
@@ -18,13 +22,10 @@ float pn_width_along(vec2 n) {
   return pn_fixed() && !pn_cones() ? pn_width.x : dot(abs(n), pn_smoothie_extent());
 }
 
-// The kappa at which the whole light is seen by the farthest receiver, past an edge at w.
+// The kappa at which the farthest receiver sees the whole light past an edge at w.
 float pn_reach(float w) { return pn_fixed() ? 1.0 : max(w - pn_lights[0].extent.w, 0.0); }
 
-vec2 pn_across(vec2 n) { return pn_cones() ? sign(n) * pn_smoothie_extent() : n * pn_width_along(n); }
-
-// A silhouette is taken to lie this much farther in, map units: rasterised meshes keep within their raster's error.
-float pn_seam() {
-  vec2 texel = 1.0 / pn_lights[0].map_bounds[pn_mode.x].zw;
-  return 4.0 * pn_lights[0].range.w * max(texel.x, texel.y);
+vec2 pn_across(vec2 n) {
+  return pn_cones() ? vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0) * pn_smoothie_extent()
+                    : n * pn_width_along(n);
 }

@@ -1,68 +1,89 @@
-// One triangle for each edge, around its smoothie and the corners at its ends; for edges that are no silhouette it has
-// no area. Loops of at most one turn skip, in software, what no vertex of a group needs.
+// Four triangles for each entry of the list: two along the edge, and one at each of its ends that makes a convex corner
+// with the next edge, half of the corner. All reach a seam farther than they need, so that nothing shows between them
+// or between them and the mesh.
 #include "shaders/precision.glsl"
-#include "casters/edges.glsl"
 #include "techniques/smoothies/smoothie.glsl"
 
-flat out highp vec3 pn_p;       // ends in (s, t, w)
-flat out highp vec3 pn_q;
-flat out highp vec4 pn_outwards; // outward normal, x
-flat out highp vec4 pn_neighbours; // outward normals of the neighbours at p, at q; zero without a corner
+uniform highp usampler2D pn_list;
+uniform highp usampler2D pn_total;
 
-// Bounds in (tau, kappa): least and most tau, most kappa.
-vec3 pn_include(vec3 bounds, vec2 v, vec2 along, vec2 n, vec2 x) {
-  float kappa = dot(v, n) / dot(x, n);
-  float tau = dot(v - kappa * x, along) / dot(along, along);
-  return vec3(min(bounds.x, tau), max(bounds.y, tau), max(bounds.z, kappa));
+out highp vec2 pn_offset_out;   // from the edge's end, for corners
+out highp vec3 pn_linear;       // kappa along this edge's normal, along the neighbour's; w
+flat out highp vec2 pn_shape;   // 0 along the edge, 1 a rounded corner, 2 one shaped like the light; how sharp
+
+float pn_seam() {
+  vec2 texel = 1.0 / pn_lights[0].map_bounds[pn_mode.x].zw;
+  return 2.0 * pn_lights[0].range.w * max(texel.x, texel.y);
 }
 
-// Adds the corner between normals n and m, at an end that lies at offset v from p. Rounded corners: with phi half the
-// angle between the normals, points o with |o| <= reach A_o, and A_o <= A_n cos + A_across sin.
-vec3 pn_include_corner(vec3 bounds, vec2 v, vec2 along, vec2 n, vec2 x, vec2 m, float reach, float back) {
+void pn_place(vec2 st, float w) {
+  vec2 texel = pn_map_texel(0, pn_mode.x, st);
+  vec4 depth = pn_lights[0].map_depth[pn_mode.x];
+  gl_Position = vec4(2.0 * texel / vec2(pn_map_size(0)) - 1.0, 2.0 * (w - depth.x) / depth.y - 1.0, 1.0);
+}
+
+// index 0..5 of the two triangles along the edge.
+void pn_straight(int index, vec3 p, vec3 q, vec2 n, vec2 x) {
+  int corner = index > 2 ? index - 2 : index; // 0 1 2, 1 2 3
+  vec2 along = q.xy - p.xy;
+  float over = pn_seam() / length(along), width = dot(x, n);
+  float tau = (corner & 1) == 0 ? -over : 1.0 + over;
+  float kappa = corner < 2 ? -pn_seam() / width : pn_reach((corner & 1) == 0 ? p.z : q.z);
+  float w = mix(p.z, q.z, tau);
+  pn_linear = vec3(kappa, 0.0, w);
+  pn_place(p.xy + tau * along + kappa * x, w);
+}
+
+// index 0..2 of the triangle at end v, between this edge and the half of the turn to the next, whose normal is m. Of
+// rounded corners, with phi half the angle between the normals, points are wanted that lie at most reach A_o away,
+// and A_o <= A_n cos + A_across sin in all directions of the triangle.
+void pn_corner(int index, vec3 v, vec2 n, vec2 x, vec2 m, vec2 back) {
+  float reach = pn_reach(v.z);
+  vec2 a, b, y = pn_across(m);
   if (pn_cones()) {
-    vec2 y = pn_across(m);
-    bounds = pn_include(bounds, v + reach * y, along, n, x);
-    bounds = pn_include(bounds, v + reach * vec2(x.x, y.y), along, n, x);
-    return pn_include(bounds, v + reach * vec2(y.x, x.y), along, n, x);
+    float turn = n.x * m.y - n.y * m.x;
+    vec2 aside = vec2(x.x, -x.y);
+    if ((x.x * aside.y - x.y * aside.x) * turn < 0.0) aside = -aside;
+    a = x * reach;
+    b = (y == -x ? aside : 0.5 * (x + y)) * reach;
+  } else {
+    vec2 sum = n + m;
+    vec2 middle = length(sum) > 1e-3 ? normalize(sum) : back;
+    float cosine = clamp(dot(n, middle), 0.0, 1.0), sine = sqrt(1.0 - cosine * cosine);
+    float most = pn_fixed() ? pn_width.x : length(pn_extent(0));
+    float size = min(pn_width_along(n) + pn_width_along(vec2(-n.y, n.x)) * sine, most);
+    size *= reach / sqrt(0.5 + 0.5 * cosine);
+    a = n * size;
+    b = middle * size;
   }
-  float sine = sqrt(clamp(0.5 - 0.5 * dot(n, m), 0.0, 1.0));
-  vec2 a = vec2(pn_width_along(n), pn_width_along(vec2(-n.y, n.x))) * reach;
-  float out_most = a.x + a.y * min(sine, 0.5);
-  float back_most = a.x * min(sine, 0.5) + a.y * sine * sine;
-  return pn_include(bounds, v + n * out_most + back * back_most * along / length(along), along, n, x);
+  if (pn_cones() && x == y) b = a = vec2(0.0);
+  vec2 side = length(a - b) > 0.0 ? 2.0 * pn_seam() * normalize(a - b) : vec2(0.0);
+  vec2 inside = dot(a, a) > 0.0 ? -pn_seam() * normalize(a + b) : vec2(0.0);
+  vec2 o = index == 0 ? inside : index == 1 ? a + side : b - side;
+  vec2 widths = vec2(dot(x, n), pn_width_along(m));
+  float sharp = 1.0 - max(dot(n, m), 0.0) * max(widths.x / widths.y, widths.y / widths.x);
+  pn_offset_out = o;
+  pn_linear = vec3(dot(o, n) / widths.x, dot(o, m) / widths.y, v.z);
+  pn_shape = vec2(pn_cones() ? 2.0 : 1.0, pn_fixed() ? 0.0 : clamp(sharp, 0.0, 1.0));
+  pn_place(v.xy + o, v.z);
 }
 
 void main() {
-  int edge = gl_VertexID / 3, corner = gl_VertexID - 3 * edge;
-  float side = pn_side(edge);
-  vec2 at = vec2(0.0);
-  pn_p = pn_q = vec3(0.0);
-  pn_outwards = pn_neighbours = vec4(0.0);
-  for (int i = 0; i < (side > 0.0 ? 1 : 0); i++) {
-    uvec4 v = pn_edge(edge);
-    vec3 a = pn_vertex(v.x), b = pn_vertex(v.y);
-    if (!pn_before_cut(a) && !pn_before_cut(b)) break;
-    vec3 p = pn_edge_end(a, b), q = pn_edge_end(b, a);
-    vec2 along = q.xy - p.xy, n = pn_outward(along, side), x = pn_across(n);
-    if (!(dot(x, n) > 0.0) || pn_reach(max(p.z, q.z)) <= 0.0) break;
-    vec4 next = texelFetch(pn_corners, pn_entry(edge), 0);
-    vec3 bounds = vec3(0.0, 1.0, max(pn_reach(p.z), pn_reach(q.z)));
-    if (next.xy != vec2(0.0))
-      bounds = pn_include_corner(bounds, vec2(0.0), along, n, x, next.xy, pn_reach(p.z), -1.0);
-    if (next.zw != vec2(0.0)) bounds = pn_include_corner(bounds, along, along, n, x, next.zw, pn_reach(q.z), 1.0);
-    // A box in (tau, kappa), a seam wider on all sides; its triangle is twice as high, and twice as wide at its base.
-    float seam = 2.0 * pn_seam();
-    float low = -seam / dot(x, n), high = bounds.z;
-    bounds.xy += vec2(-seam, seam) / length(along);
-    float middle = 0.5 * (bounds.x + bounds.y), half_width = bounds.y - bounds.x;
-    float tau = middle + (corner == 0 ? -half_width : corner == 1 ? half_width : 0.0);
-    float kappa = corner == 2 ? low + 2.0 * (high - low) : low;
-    vec2 texel = pn_map_texel(0, pn_mode.x, p.xy + tau * along + kappa * x);
-    at = 2.0 * texel / vec2(pn_map_size(0)) - 1.0;
-    pn_p = p;
-    pn_q = q;
-    pn_outwards = vec4(n, x);
-    pn_neighbours = next;
-  }
-  gl_Position = vec4(at, 0.0, 1.0);
+  int place = gl_VertexID / 12, index = gl_VertexID - 12 * place;
+  gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
+  pn_offset_out = vec2(0.0);
+  pn_linear = vec3(0.0);
+  pn_shape = vec2(0.0);
+  if (uint(gl_VertexID) >= texelFetch(pn_total, ivec2(0), 0).x) return; // where the device cannot count its draws
+  int edge = int(texelFetch(pn_list, pn_entry(place), 0).x);
+  vec4 next = texelFetch(pn_corners, pn_entry(edge), 0);
+  vec2 m = index < 9 ? next.xy : next.zw;
+  if (index > 5 && m == vec2(0.0)) return;
+  uvec4 v = pn_edge(edge);
+  vec3 a = pn_vertex(v.x), b = pn_vertex(v.y);
+  vec3 p = pn_edge_end(a, b), q = pn_edge_end(b, a);
+  vec2 along = q.xy - p.xy, n = pn_outward(along, pn_side(edge)), x = pn_across(n), unit = normalize(along);
+  if (index < 6) pn_straight(index, p, q, n, x);
+  else if (index < 9) pn_corner(index - 6, p, n, x, m, -unit);
+  else pn_corner(index - 9, q, n, x, m, unit);
 }

@@ -11,46 +11,51 @@ float pn_smoothie(int light, highp sampler2DArray smoothies, int map, ivec2 texe
   return reciprocal > 0.0 ? 1.0 / reciprocal : 1e30;
 }
 
-// The w that the receiver's tangent plane has at a place in the map beside it, and the errors it may have there.
-float pn_plane_w(pn_Receiver r, vec2 st) {
-  vec2 aside = st - r.m.xy;
-  float rise = dot(r.n.xy, aside) / r.k;
-  float lever = abs(aside.x) + abs(aside.y) + r.reach * abs(rise);
-  return r.m.z + rise + r.epsilon_w - (r.epsilon_plane + r.sigma * lever) / r.k;
+// The receiver's tangent plane around it in the map: w there is plane.z + plane.xy . (st - st_R), nearer to the light by
+// the errors that it may have within a texel.
+vec3 pn_plane(int light, pn_Receiver r) {
+  vec2 slope = r.n.xy / r.k, texel = 1.0 / pn_lights[light].map_bounds[0].zw;
+  float lever = texel.x + texel.y + r.reach * dot(abs(slope), texel);
+  // A smoothie reaches in by its seam, which may lie in this very plane.
+  float seam = 4.0 * pn_lights[light].range.w * max(texel.x, texel.y) * length(r.n.xy);
+  return vec3(slope, r.m.z + r.epsilon_w - (r.epsilon_plane + seam + r.sigma * lever) / r.k);
 }
 
-// One texel's answer. share: see pn_technique.
+// One texel's answer. share: what a smoothie's visibility is multiplied by.
 float pn_texel_sees(int light, highp sampler2DArray maps, highp sampler2DArray smoothies, int map, pn_Receiver r,
-                    ivec2 texel, float share) {
+                    ivec2 texel, vec3 plane, float share) {
   if (pn_map_count(light) > 1) { // a texel counted from one tile of a wide light, which may lie in another
     vec2 st = pn_map_st(light, map, vec2(texel) + 0.5);
     map = pn_map_at(light, st);
     texel = ivec2(floor(pn_map_texel(light, map, st)));
   }
   if (!pn_map_inside(light, texel)) return 1.0;
-  if (pn_texel_blocks(light, maps, map, r, texel) > 0.5) return 0.0;
-  float w = pn_plane_w(r, pn_map_st(light, map, vec2(texel) + 0.5));
-  return min(pn_smoothie(light, smoothies, map, texel, w) * share, 1.0);
+  vec3 q = pn_texel_point(light, maps, map, texel);
+  float w = plane.z + dot(plane.xy, q.xy - r.m.xy);
+  float sees = min(pn_smoothie(light, smoothies, map, texel, w) * share, 1.0);
+  return pn_blocks_apart(light, r, q) ? 0.0 : sees;
 }
 
 float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray smoothies, pn_Receiver r) {
-  if (r.k >= 0.0) return 1.0; // turned away from the light's centre, whose shadow this is
+  int map = pn_map_at(light, r.m.xy);
+  vec2 at = pn_map_texel(light, map, r.m.xy);
+  bool filtered = pn_parameter(light, 3) > 0.5;
+  if (filtered) at -= 0.5;
+  ivec2 base = ivec2(floor(at)), size = pn_map_size(light);
+  vec2 f = filtered ? at - vec2(base) : vec2(0.0);
+  // What is turned away from the light's centre is out of this shadow, which is the centre's.
+  bool asks = r.k < 0.0 && all(greaterThanEqual(base, ivec2(-1))) && all(lessThan(base, size));
   // Where the horizon cuts the light, visibility is the share of what lies above it.
   float above = min(-r.k / dot(abs(r.n.xy), pn_extent(light)), 1.0);
   // A fixed width under a sun: distances count from the nearest caster's plane.
   bool scaled = pn_parameter(light, 2) > 0.0 && pn_is_sun(light);
   float share = (scaled ? max(pn_lights[light].range.x - r.m.z, 0.0) : 1.0) / above;
-  int map = pn_map_at(light, r.m.xy);
-  vec2 at = pn_map_texel(light, map, r.m.xy);
-  if (pn_parameter(light, 3) < 0.5)
-    return pn_texel_sees(light, maps, smoothies, map, r, ivec2(floor(at)), share);
-  ivec2 base = ivec2(floor(at - 0.5));
-  vec2 f = at - 0.5 - vec2(base);
-  float sum = 0.0;
-  for (int i = 0; i < 4; i++) {
+  vec3 plane = pn_plane(light, r);
+  float hidden = 0.0;
+  for (int i = 0; i < (asks ? filtered ? 4 : 1 : 0); i++) {
     ivec2 step = ivec2(i & 1, i >> 1);
     vec2 weight = mix(1.0 - f, f, vec2(step));
-    sum += weight.x * weight.y * pn_texel_sees(light, maps, smoothies, map, r, base + step, share);
+    hidden += weight.x * weight.y * (1.0 - pn_texel_sees(light, maps, smoothies, map, r, base + step, plane, share));
   }
-  return sum;
+  return 1.0 - hidden;
 }
