@@ -56,7 +56,8 @@ void main() {
   int edge = min(int(gl_FragCoord.y) * PN_EDGE_ROW + int(gl_FragCoord.x), pn_count.x - 1);
   float side = pn_side(edge);
   vec4 corners = vec4(pn_no_smoothie);
-  for (int i = 0; i < (side > 0.0 ? 1 : 0); i++) { // no turn where no pixel nearby has a silhouette
+  int turns = int(side + 0.75); // 0 or 1, which a compiler does not see: software skips a loop that no pixel nearby takes
+  for (int i = 0; i < turns; i++) {
     uvec4 v = pn_edge(edge);
     vec3 a = pn_vertex(v.x), b = pn_vertex(v.y);
     if (!pn_before_cut(a) && !pn_before_cut(b)) break;
