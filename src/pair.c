@@ -23,7 +23,9 @@ static void free_pair(pn_gpu *gpu, pn_pair *pair, bool abandon) {
   pn_texture_free(gpu, &pair->image, abandon);
   pn_texture_free(gpu, &pair->low, abandon);
   pn_texture_free(gpu, &pair->search, abandon);
-  for (int i = 0; i < 2; i++) pn_texture_free(gpu, &pair->work[i], abandon);
+  for (int i = 0; i < PN_WORK_MAX; i++) pn_texture_free(gpu, &pair->work[i], abandon);
+  pn_receiver_map_free(gpu, &pair->seen, abandon);
+  pn_buffer_free(gpu, &pair->arguments, abandon);
   pn_clock_free(gpu, &pair->clock, abandon);
   pn_free(gpu, pair);
 }

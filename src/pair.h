@@ -3,13 +3,19 @@
 #define PN_PAIR_H
 
 #include "context.h"
+#include "maps/receiver_map.h"
+
+enum { PN_WORK_MAX = 8 };
 
 typedef struct pn_pair {
   pn_object *light, *receiver;
-  pn_texture image;   /* the result */
-  pn_texture low;     /* at reduced resolution, before it is brought up */
-  pn_texture work[2]; /* a technique's own */
-  pn_texture search;  /* what a search did, when debugging */
+  pn_texture image;             /* the result */
+  pn_texture low;               /* at reduced resolution, before it is brought up */
+  pn_texture work[PN_WORK_MAX]; /* a technique's own */
+  pn_receiver_map seen;         /* for techniques that scatter */
+  pn_buffer arguments;          /* of draws that the GPU counts */
+  bool warned;                  /* a technique's warning was given */
+  pn_texture search;            /* what a search did, when debugging */
   bool drawn;
   pn_clock clock;
   struct pn_pair *next;

@@ -15,14 +15,7 @@ static bool is_alive(const pn_context *context, const void *object) {
 static pn_result fill_with_light(pn_gpu *gpu, pn_attachment target, int width, int height) {
   pn_pass pass = {.color = {target}, .width = width, .height = height};
   pn_result result = pn_pass_begin(gpu, &pass);
-  static const GLfloat one[4] = {1, 1, 1, 1};
-  if (result == PN_OK) {
-    /* The host's own texture may be larger than the view: only the view is written. */
-    pn_set_switch(gpu, GL_SCISSOR_TEST, true);
-    pn_set_scissor(gpu, 0, 0, width, height);
-    GL(gpu, ClearBufferfv)(GL_COLOR, 0, one);
-    pn_set_switch(gpu, GL_SCISSOR_TEST, false);
-  }
+  if (result == PN_OK) pn_fill(gpu, width, height, 1);
   return result;
 }
 
@@ -35,9 +28,9 @@ static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pn_pair
     pn_clock_mark(gpu, &pair->clock, "visibility");
     return result;
   }
+  result = pn_light_bind_block(light);
+  if (result != PN_OK) return result;
   if (technique->shader) {
-    result = pn_light_bind_block(light);
-    if (result != PN_OK) return result;
     char defines[PN_TECHNIQUE_DEFINES];
     pn_technique_defines(technique, light->values, defines);
     pn_gathering gathering = {

@@ -125,6 +125,7 @@ typedef enum {
   PN_MESSAGE_RESULT_TARGET,           /* the host's texture has the wrong size, format or layer */
   PN_MESSAGE_FORWARD,                 /* the technique has no forward form, or slots are out of range */
   PN_MESSAGE_FALLBACK,                /* information: a slower way is taken because the device lacks a feature */
+  PN_MESSAGE_ACCUMULATION,            /* warning: 16-bit sums of many small occluders lose some of them (technique ssm) */
   /* information, once a mesh: edges that are open, shared by three and more faces, between faces wound against each
    * other */
   PN_MESSAGE_MESH_EDGES,

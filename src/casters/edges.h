@@ -49,7 +49,7 @@ typedef struct pn_mesh_edges {
   /* a technique's own, filled anew for each instance */
   pn_texture corners, sums[3], total, list;
   pn_buffer arguments;
-  bool stale;                       /* positions changed */
+  bool stale; /* positions changed */
 } pn_mesh_edges;
 
 struct pn_mesh_data;

@@ -114,8 +114,8 @@ static pn_result find_edges(pn_gpu *gpu, const pn_mesh_data *mesh, pn_edge_list 
   uint32_t *indices = kept ? mesh->kept_indices : read_indices(gpu, mesh);
   pn_result result = PN_ERROR_OUT_OF_MEMORY;
   if (positions && indices)
-    result = pn_edges_find(gpu, positions, mesh->positions.count, indices, kept ? mesh->kept_count : mesh->draw_count,
-                           list);
+    result =
+        pn_edges_find(gpu, positions, mesh->positions.count, indices, kept ? mesh->kept_count : mesh->draw_count, list);
   pn_free(gpu, positions);
   if (!kept) pn_free(gpu, indices);
   if (result == PN_OK) report(gpu, mesh, list);
@@ -160,8 +160,8 @@ pn_result pn_mesh_edges_get(pn_gpu *gpu, pn_mesh_data *mesh, pn_mesh_edges **out
 void pn_mesh_edges_free(pn_gpu *gpu, pn_mesh_edges **edges, bool abandon) {
   pn_mesh_edges *e = *edges;
   if (!e) return;
-  pn_texture *all[] = {&e->positions, &e->edges, &e->rings, &e->entries, &e->points, &e->sides, &e->corners,
-                       &e->sums[0],   &e->sums[1], &e->sums[2], &e->total, &e->list};
+  pn_texture *all[] = {&e->positions, &e->edges,   &e->rings,   &e->entries, &e->points, &e->sides,
+                       &e->corners,   &e->sums[0], &e->sums[1], &e->sums[2], &e->total,  &e->list};
   pn_buffer_free(gpu, &e->arguments, abandon);
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) pn_texture_free(gpu, all[i], abandon);
   pn_free(gpu, e);

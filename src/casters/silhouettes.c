@@ -38,7 +38,8 @@ static pn_result edge_program(pn_gpu *gpu, const char *fragment, const pn_progra
   return pn_program_get(gpu, &key, out);
 }
 
-static const char *const points_shader = "casters/points.frag.glsl", *const sides_shader = "casters/silhouette.frag.glsl";
+static const char *const points_shader = "casters/points.frag.glsl", *const sides_shader =
+                                                                         "casters/silhouette.frag.glsl";
 
 pn_result pn_silhouettes_prepare(pn_gpu *gpu) {
   const pn_program *program;

@@ -7,7 +7,11 @@
 #include "casters/edges.h"
 #include "space/space.h"
 
-typedef enum { PN_SIDE_NONE = 0, PN_SIDE_RIGHT, PN_SIDE_LEFT } pn_side; /* where the mesh lies, walking along the edge */
+typedef enum {
+  PN_SIDE_NONE = 0,
+  PN_SIDE_RIGHT,
+  PN_SIDE_LEFT
+} pn_side; /* where the mesh lies, walking along the edge */
 
 /* Fills the textures points and sides of a mesh's edges for one instance. cut: pn_cut of edges.glsl. */
 pn_result pn_silhouettes_draw(pn_gpu *gpu, pn_mesh_edges *edges, const pn_matrix *light_from_object, bool sun,

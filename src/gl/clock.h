@@ -5,7 +5,7 @@
 
 #include "gl/gpu.h"
 
-enum { PN_CLOCK_MARKS = 16, PN_CLOCK_FRAMES = 4 };
+enum { PN_CLOCK_MARKS = 48, PN_CLOCK_FRAMES = 4 };
 
 typedef struct {
   const char *stage[PN_CLOCK_MARKS]; /* stage[i] lies between marks i-1 and i; stage[0] is NULL, the start */

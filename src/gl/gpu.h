@@ -28,6 +28,7 @@ typedef struct {
   bool viewports;     /* 4.1: one viewport, depth range and scissor test for each index */
   bool clip_control;  /* 4.5 or ARB_clip_control */
   bool robustness;    /* GetGraphicsResetStatus works */
+  bool float_blend;   /* 32-bit float images can be blended: all desktop GL can; OpenGL ES 3 needs an extension */
   bool blend_buffers; /* 4.0: each draw buffer has its own blend function */
   bool indirect;      /* 4.0 or ARB_draw_indirect: draws whose counts lie in a buffer */
   bool fixed_restart; /* GL_PRIMITIVE_RESTART_FIXED_INDEX, 4.3 */

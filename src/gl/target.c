@@ -122,6 +122,14 @@ pn_result pn_texture_shape(pn_gpu *gpu, pn_texture *texture, GLenum format, int 
   return PN_OK;
 }
 
+void pn_texture_write(pn_gpu *gpu, const pn_texture *texture, int width, int height, const void *pixels) {
+  const format_info *info = find_format(texture->format);
+  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
+  GL(gpu, BindTexture)(texture->target, texture->id);
+  GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, 0);
+  GL(gpu, TexSubImage2D)(texture->target, 0, 0, 0, width, height, info->layout, info->type, pixels);
+}
+
 void pn_texture_free(pn_gpu *gpu, pn_texture *texture, bool abandon) {
   if (!texture->id) return;
   if (!abandon) GL(gpu, DeleteTextures)(1, &texture->id);
@@ -201,6 +209,14 @@ pn_result pn_pass_begin(pn_gpu *gpu, const pn_pass *pass) {
 void pn_draw_screen(pn_gpu *gpu) {
   GL(gpu, BindVertexArray)(gpu->vertex_array);
   GL(gpu, DrawArrays)(GL_TRIANGLES, 0, 3);
+}
+
+void pn_fill(pn_gpu *gpu, int width, int height, float value) {
+  const GLfloat values[4] = {value, value, value, 1};
+  pn_set_switch(gpu, GL_SCISSOR_TEST, true);
+  pn_set_scissor(gpu, 0, 0, width, height);
+  GL(gpu, ClearBufferfv)(GL_COLOR, 0, values);
+  pn_set_switch(gpu, GL_SCISSOR_TEST, false);
 }
 
 pn_result pn_screen_begin(pn_gpu *gpu, const pn_pass *pass, const pn_program *program) {

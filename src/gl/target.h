@@ -17,6 +17,8 @@ typedef struct {
  * array. */
 pn_result pn_texture_shape(pn_gpu *gpu, pn_texture *texture, GLenum format, int width, int height, int layers,
                            int levels);
+/* Writes the first width x height texels of a 2D texture; pixels in its format's own layout and type. */
+void pn_texture_write(pn_gpu *gpu, const pn_texture *texture, int width, int height, const void *pixels);
 void pn_texture_free(pn_gpu *gpu, pn_texture *texture, bool abandon);
 void pn_texture_image(const pn_texture *texture, pn_image *out);
 
@@ -53,6 +55,9 @@ typedef struct {
 pn_result pn_pass_begin(pn_gpu *gpu, const pn_pass *pass);
 /* A triangle that covers the target. The program and its uniforms are set by the caller. */
 void pn_draw_screen(pn_gpu *gpu);
+/* One value in the pass's first colour image: the host's own texture may be larger than the view, only that is
+ * written. */
+void pn_fill(pn_gpu *gpu, int width, int height, float value);
 /* pn_pass_begin, the program in use: the usual start of a full-screen pass. */
 pn_result pn_screen_begin(pn_gpu *gpu, const pn_pass *pass, const pn_program *program);
 

@@ -143,7 +143,7 @@ static double snap_step(double low, double high) {
   return ceil(high / step) - floor(low / step) > snap_steps ? 2 * step : step;
 }
 
-static void snap_range(double *low, double *high) {
+void pn_fit_snap(double *low, double *high) {
   if (!(*high > *low)) return;
   double step = snap_step(*low, *high);
   *low = floor(*low / step) * step;
@@ -282,7 +282,7 @@ void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_reques
   out->clamped = clamp_opening(&f, out);
   for (int i = 0; i < 2; i++) {
     widen_flat(&out->bounds[i], &out->bounds[i + 2], f.most[1 - i] - f.least[1 - i]);
-    if (!request->given) snap_range(&out->bounds[i], &out->bounds[i + 2]);
+    if (!request->given) pn_fit_snap(&out->bounds[i], &out->bounds[i + 2]);
   }
   clamp_opening(&f, out); /* what snapping put beyond the limit is empty */
   snap_depth(&f, out);

@@ -31,6 +31,10 @@ typedef struct {
   double reach_width, w_reach;
 } pn_fit_request;
 
+/* Widens a range to whole steps of a grid that depends on its extent alone, so that what moves a little does not move
+ * the texels between. */
+void pn_fit_snap(double *low, double *high);
+
 void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_request *request, pn_fit_result *out);
 
 #endif

@@ -66,6 +66,8 @@ typedef struct {
 pn_result pn_maps_draw(pn_gpu *gpu, pn_maps *maps, const pn_map_draw *draw);
 /* Fills pyramid or stack from what was drawn; the block must be bound. (maps/range.c) */
 pn_result pn_range_build(pn_gpu *gpu, pn_maps *maps);
+/* The levels of a pyramid above its first one, for every layer. */
+pn_result pn_range_reduce(pn_gpu *gpu, const pn_texture *range);
 pn_result pn_range_shape(pn_gpu *gpu, pn_texture *texture, const pn_range_kind *kind, int layers, int width,
                          int height);
 pn_result pn_range_prepare(pn_gpu *gpu, const pn_range_kind *kind);

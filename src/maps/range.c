@@ -46,7 +46,9 @@ pn_result pn_range_prepare(pn_gpu *gpu, const pn_range_kind *kind) {
   const pn_program *program;
   pn_result result = PN_OK;
   for (int first = 0; first < 2 && result == PN_OK && kind->structure; first++)
-    result = range_program(gpu, kind, first, &program);
+    result = range_program(
+        gpu, &(pn_range_kind){kind->structure, kind->quads && (first || kind->structure == PN_RANGE_STACK)}, first,
+        &program);
   return result;
 }
 
@@ -70,21 +72,34 @@ static pn_result begin(const range_step *s, pn_attachment target, int width, int
   return PN_OK;
 }
 
-static pn_result draw_pyramid(const range_step *s) {
-  const pn_texture *range = &s->maps->range;
+/* A pyramid's level from the one below: only that one may be read, so reading and drawing never meet. The shader then
+ * calls it level 0. */
+static pn_result reduce(pn_gpu *gpu, const pn_texture *range, int level, int layer) {
   const pn_program *program;
-  int width = larger(range->width >> s->level, 1), height = larger(range->height >> s->level, 1);
-  pn_attachment target = {range->id, range->target, s->level, s->layer};
-  pn_result result = begin(s, target, width, height, &program);
+  pn_result result = range_program(gpu, &(pn_range_kind){PN_RANGE_PYRAMID, false}, false, &program);
   if (result != PN_OK) return result;
-  /* only the level below may be read: reading and drawing never meet. The shader then calls it level 0 */
-  if (s->level > 0) {
-    pn_bind_texture(s->gpu, PN_UNIT_RANGE, range->target, range->id, true);
-    GL(s->gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, s->level - 1);
-    GL(s->gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, s->level - 1);
-  }
-  pn_draw_screen(s->gpu);
+  pn_pass pass = {.color = {{range->id, range->target, level, layer}},
+                  .width = larger(range->width >> level, 1),
+                  .height = larger(range->height >> level, 1)};
+  result = pn_screen_begin(gpu, &pass, program);
+  if (result != PN_OK) return result;
+  GLint source[4] = {layer, level, 0, 0};
+  pn_bind_texture(gpu, PN_UNIT_RANGE, range->target, range->id, true);
+  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, level - 1);
+  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, level - 1);
+  GL(gpu, Uniform4iv)(pn_uniform(program, "pn_source"), 1, source);
+  pn_draw_screen(gpu);
   return PN_OK;
+}
+
+pn_result pn_range_reduce(pn_gpu *gpu, const pn_texture *range) {
+  pn_result result = PN_OK;
+  for (int level = 1; level < range->levels; level++)
+    for (int layer = 0; layer < range->layers && result == PN_OK; layer++) result = reduce(gpu, range, level, layer);
+  pn_bind_texture(gpu, PN_UNIT_RANGE, range->target, range->id, true);
+  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, 0);
+  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, range->levels - 1);
+  return result;
 }
 
 /* A stack's levels are layers of one array, which GL 3.3 does not let a pass read and draw at once: each is drawn
@@ -120,13 +135,13 @@ static pn_result build_stack(pn_gpu *gpu, pn_maps *maps) {
 static pn_result build_pyramid(pn_gpu *gpu, pn_maps *maps) {
   const pn_texture *range = &maps->range;
   pn_result result = PN_OK;
-  for (int level = 0; level < range->levels; level++)
-    for (int layer = 0; layer < range->layers && result == PN_OK; layer++)
-      result = draw_pyramid(&(range_step){gpu, maps, layer, level});
-  pn_bind_texture(gpu, PN_UNIT_RANGE, range->target, range->id, true);
-  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, 0);
-  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, range->levels - 1);
-  return result;
+  for (int layer = 0; layer < range->layers && result == PN_OK; layer++) {
+    const pn_program *program;
+    pn_attachment target = {range->id, range->target, 0, layer};
+    result = begin(&(range_step){gpu, maps, layer, 0}, target, range->width, range->height, &program);
+    if (result == PN_OK) pn_draw_screen(gpu);
+  }
+  return result == PN_OK ? pn_range_reduce(gpu, range) : result;
 }
 
 pn_result pn_range_build(pn_gpu *gpu, pn_maps *maps) {

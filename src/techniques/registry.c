@@ -7,9 +7,9 @@
 #include <string.h>
 
 static const pn_technique_class *const classes[] = {
-    &pn_technique_hard,           &pn_technique_pcf,     &pn_technique_pcss, &pn_technique_average,
-    &pn_technique_backprojection, &pn_technique_bitmask,
-    &pn_technique_smoothies,
+    &pn_technique_hard,    &pn_technique_pcf,       &pn_technique_pcss,
+    &pn_technique_average, &pn_technique_ssm,       &pn_technique_backprojection,
+    &pn_technique_bitmask, &pn_technique_smoothies,
 };
 enum { COUNT = sizeof classes / sizeof *classes };
 

@@ -11,10 +11,10 @@ typedef struct {
   pn_gpu *gpu;
   const pn_light_desc *desc;
   const pn_frame *frame;
-  const double *values;     /* parameters, in the order of the table */
-  pn_maps *maps;            /* drawn by pn_maps_update as the technique wanted them */
-  pn_buffer *block; /* the light's, bound */
-  pn_casters *casters;      /* of the last pn_maps_update; NULL when they are gone */
+  const double *values; /* parameters, in the order of the table */
+  pn_maps *maps;        /* drawn by pn_maps_update as the technique wanted them */
+  pn_buffer *block;     /* the light's, bound */
+  pn_casters *casters;  /* of the last pn_maps_update; NULL when they are gone */
   uint32_t groups;
   const pn_region *visible; /* what that update was fitted to, or NULL */
   pn_receiver *receiver;
@@ -65,6 +65,6 @@ void pn_technique_defines(const pn_technique_class *technique, const double *val
 bool pn_parameter_set(const pn_technique *table, const char *name, double value, double *values, pn_message *message);
 
 extern const pn_technique_class pn_technique_hard, pn_technique_pcf, pn_technique_pcss, pn_technique_average,
-    pn_technique_backprojection, pn_technique_bitmask, pn_technique_smoothies;
+    pn_technique_ssm, pn_technique_backprojection, pn_technique_bitmask, pn_technique_smoothies;
 
 #endif

@@ -1,0 +1,206 @@
+/* Penumbra extents on the CPU, as in the paper (Soft Shadow Maps, section 4.1): occluder and receiver map are read
+ * back, and a loop goes over the micropatches. The same list as the GPU makes, in the same order: the functions are
+ * those of node.glsl and patches.glsl, under the same names. */
+#include <math.h>
+#include <string.h>
+
+#include "techniques/ssm/ssm.h"
+
+/* A pyramid of (largest, smallest) w, level after level. */
+enum { LEVELS_MAX = 16 };
+typedef struct {
+  int width, height, levels;
+  float *level[LEVELS_MAX];
+  float *memory;
+} pyramid;
+
+static int shifted(int size, int level) { return size >> level > 1 ? size >> level : 1; }
+
+static pn_result read_pyramid(pn_gpu *gpu, const pn_texture *texture, int layer, pyramid *out) {
+  size_t texels = 0;
+  *out = (pyramid){texture->width, texture->height, texture->levels, {0}, NULL};
+  for (int i = 0; i < texture->levels; i++)
+    texels += (size_t)shifted(texture->width, i) * (size_t)shifted(texture->height, i);
+  out->memory = pn_reallocate(gpu, NULL, 2 * texels * sizeof(float));
+  if (!out->memory) return PN_ERROR_OUT_OF_MEMORY;
+  float *next = out->memory;
+  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
+  for (int i = 0; i < texture->levels; i++) {
+    int width = shifted(texture->width, i), height = shifted(texture->height, i);
+    pn_read_from(gpu, texture, i, layer);
+    GL(gpu, ReadPixels)(0, 0, width, height, GL_RG, GL_FLOAT, next);
+    out->level[i] = next;
+    next += 2 * (size_t)width * (size_t)height;
+  }
+  return PN_OK;
+}
+
+static const float *pyramid_at(const pyramid *p, int x, int y, int level) {
+  return p->level[level] + 2 * ((size_t)y * (size_t)shifted(p->width, level) + (size_t)x);
+}
+
+/* ---- the walk ---------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+  const ssm_list *list;
+  const pn_light_block *block;
+  pyramid occluders, receivers;
+  float seen_bounds[4], share;
+  int seen_size[2];
+  float *entries;
+  int count, capacity;
+} walk;
+
+static float clampf(float x, float low, float high) { return fminf(fmaxf(x, low), high); }
+
+static void map_st(const walk *w, float x, float y, float st[2]) {
+  const float *b = w->block->map_bounds[w->list->map];
+  st[0] = b[0] + x / b[2];
+  st[1] = b[1] + y / b[3];
+}
+
+/* The last map whose middle is nearest, as pn_map_at. */
+static int map_at(const walk *w, const float st[2]) {
+  int best = 0;
+  float best_distance = 1e30f, size[2] = {w->block->maps[2], w->block->maps[3]};
+  for (int map = 0; map < (int)w->block->maps[0]; map++) {
+    const float *b = w->block->map_bounds[map];
+    float distance = -0.5f;
+    for (int i = 0; i < 2; i++) {
+      float texel = (st[i] - b[i]) * b[2 + i];
+      distance = fmaxf(distance, fabsf(texel - 0.5f * size[i]) / size[i] - 0.5f);
+    }
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = map;
+    }
+  }
+  return best;
+}
+
+static bool node_owned(const walk *w, const float texels[4]) {
+  if ((int)w->block->maps[0] == 1) return true;
+  float low[2], high[2];
+  map_st(w, texels[0] + 0.5f, texels[1] + 0.5f, low);
+  map_st(w, texels[2] - 0.5f, texels[3] - 0.5f, high);
+  return map_at(w, low) == w->list->map && map_at(w, high) == w->list->map;
+}
+
+static float patch_limit(const float range[2], float share) {
+  float depth = range[0] - range[1];
+  return depth > 0 ? range[1] - depth / (4 * share) : range[1];
+}
+
+static float node_limit(const walk *w, int x, int y, int level) {
+  if (level >= w->occluders.levels || (level > 0 && w->share <= 0)) return -1e30f;
+  float size = (float)(1 << level);
+  float texels[4] = {(float)x * size, (float)y * size, ((float)x + 1) * size, ((float)y + 1) * size};
+  if (texels[2] > w->block->maps[2] || texels[3] > w->block->maps[3]) return -1e30f;
+  const float *range = pyramid_at(&w->occluders, x, y, level);
+  return range[1] > -1e29f && node_owned(w, texels) ? patch_limit(range, w->share) : -1e30f;
+}
+
+static void seen_between(const walk *w, const float low[2], const float high[2], float out[2]) {
+  int a[2], b[2], extent = 0, level = 0;
+  for (int i = 0; i < 2; i++) {
+    const float *bounds = w->seen_bounds;
+    float most = (float)(w->seen_size[i] - 1);
+    a[i] = (int)clampf(floorf((low[i] - bounds[i]) * bounds[2 + i]), 0, most);
+    b[i] = (int)clampf(floorf((high[i] - bounds[i]) * bounds[2 + i]), 0, most);
+    if (b[i] - a[i] > extent) extent = b[i] - a[i];
+  }
+  while (extent >> level > 0) level++;
+  if (level > w->receivers.levels - 1) level = w->receivers.levels - 1;
+  out[0] = -1e30f;
+  out[1] = 1e30f;
+  for (int i = 0; i < 4; i++) {
+    const float *r = pyramid_at(&w->receivers, (i & 1 ? b[0] : a[0]) >> level, (i & 2 ? b[1] : a[1]) >> level, level);
+    out[0] = fmaxf(out[0], r[0]);
+    out[1] = fminf(out[1], r[1]);
+  }
+}
+
+static pn_result add_entry(walk *w, const float entry[8]) {
+  if (w->count == w->capacity) {
+    int capacity = w->capacity ? 2 * w->capacity : 4096;
+    float *grown = pn_reallocate(w->list->request->gpu, w->entries, (size_t)capacity * 8 * sizeof(float));
+    if (!grown) return PN_ERROR_OUT_OF_MEMORY;
+    w->entries = grown;
+    w->capacity = capacity;
+  }
+  memcpy(w->entries + 8 * (size_t)w->count++, entry, 8 * sizeof(float));
+  return PN_OK;
+}
+
+/* Adds the node where it is a micropatch that some receiver needs: pn_node. */
+static pn_result add_node(walk *w, int x, int y, int level) {
+  const float *range = pyramid_at(&w->occluders, x, y, level), *extent = w->block->extent;
+  float middle = 0.5f * (range[0] + range[1]), most = node_limit(w, x, y, level);
+  if (!(most > -1e29f)) return PN_OK;
+  float above = node_limit(w, x >> 1, y >> 1, level + 1), size = (float)(1 << level), low[2], high[2];
+  map_st(w, (float)x * size, (float)y * size, low);
+  map_st(w, ((float)x + 1) * size, ((float)y + 1) * size, high);
+  float seen[2] = {most, fmaxf(pyramid_at(&w->receivers, 0, 0, w->receivers.levels - 1)[1], above)};
+  for (int i = 0; i < 2; i++) {
+    float from[2], to[2];
+    for (int c = 0; c < 2; c++) {
+      float reach = extent[c] * fmaxf(middle - seen[1], 0);
+      from[c] = low[c] - reach;
+      to[c] = high[c] + reach;
+    }
+    seen_between(w, from, to, seen);
+    if (!(seen[1] <= most && seen[0] > above)) return PN_OK;
+    seen[1] = fmaxf(seen[1], above);
+  }
+  const float entry[8] = {(float)x * size, (float)y * size, size, middle, most, above, seen[1], 1};
+  return add_entry(w, entry);
+}
+
+static pn_result visit(walk *w, int x, int y, int level) {
+  const pyramid *p = &w->occluders;
+  if (x >= shifted(p->width, level) || y >= shifted(p->height, level)) return PN_OK;
+  if (pyramid_at(p, x, y, level)[0] <= -1e29f) return PN_OK; /* empty all the way down */
+  pn_result result = add_node(w, x, y, level);
+  for (int i = 0; i < 4 && level > 0 && result == PN_OK; i++)
+    result = visit(w, 2 * x + (i & 1), 2 * y + (i >> 1), level - 1);
+  return result;
+}
+
+pn_result ssm_cpu_list(const ssm_list *list, float **entries, int *count) {
+  const pn_visibility_request *r = list->request;
+  const pn_receiver_map_want *want = &r->pair->seen.want;
+  const double *b = want->bounds;
+  walk w = {.list = list,
+            .block = &r->maps->block,
+            .share = (float)list->share,
+            .seen_bounds = {(float)b[0], (float)b[1], (float)(want->width / (b[2] - b[0])),
+                            (float)(want->height / (b[3] - b[1]))},
+            .seen_size = {want->width, want->height}};
+  pn_result result = read_pyramid(r->gpu, &r->maps->range, list->map * r->maps->layers + list->layer, &w.occluders);
+  if (result == PN_OK) result = read_pyramid(r->gpu, &r->pair->seen.range, list->seen_layer, &w.receivers);
+  if (result == PN_OK) result = visit(&w, 0, 0, w.occluders.levels - 1);
+  pn_free(r->gpu, w.occluders.memory);
+  pn_free(r->gpu, w.receivers.memory);
+  if (result != PN_OK) pn_free(r->gpu, w.entries);
+  *entries = result == PN_OK ? w.entries : NULL;
+  *count = result == PN_OK ? w.count : 0;
+  return result;
+}
+
+pn_result ssm_cpu_upload(const ssm_list *list, const float *entries, int count) {
+  const pn_visibility_request *r = list->request;
+  pn_gpu *gpu = r->gpu;
+  const pn_texture *to[2] = {&r->pair->work[SSM_LIST], &r->pair->work[SSM_LIMITS]};
+  int left = count - list->first, most = ssm_list_size(r->maps), width = to[0]->width;
+  int rows = ((left < most ? left : most) + width - 1) / width;
+  float *part = pn_allocate_zero(gpu, (size_t)rows * (size_t)width * 4 * sizeof(float));
+  if (!part) return PN_ERROR_OUT_OF_MEMORY;
+  for (int half = 0; half < 2; half++) {
+    memset(part, 0, (size_t)rows * (size_t)width * 4 * sizeof(float));
+    for (int i = 0; i < left && i < most; i++)
+      memcpy(part + 4 * (size_t)i, entries + 8 * (size_t)(list->first + i) + 4 * half, 4 * sizeof(float));
+    pn_texture_write(gpu, to[half], width, rows, part);
+  }
+  pn_free(gpu, part);
+  return PN_OK;
+}

@@ -1,0 +1,49 @@
+// One node of an occluder map's range pyramid as a micropatch.
+#include "techniques/ssm/patches.glsl"
+
+uniform highp sampler2DArray pn_range;      // of the occluder maps
+uniform highp sampler2DArray pn_seen_range; // of the receiver map
+uniform ivec4 pn_source;                    // layer in the array, level, layer of the receiver map, map
+uniform ivec4 pn_levels;                    // of the occluders' pyramid, of the receivers', receiver map's width, height
+uniform vec4 pn_share;                      // how far merging may move an edge, as a share of the light's width; 0: none
+
+// With several maps the light's tiles overlap by their borders: a node belongs to the map its corners lie in.
+bool pn_node_owned(vec4 texels) {
+  if (pn_map_count(0) == 1) return true;
+  return pn_map_at(0, pn_map_st(0, pn_source.w, texels.xy + 0.5)) == pn_source.w &&
+         pn_map_at(0, pn_map_st(0, pn_source.w, texels.zw - 0.5)) == pn_source.w;
+}
+
+// The limit of a node that may be a patch at all; nothing lies below the others'.
+float pn_node_limit(ivec2 at, int level, vec4 texels) {
+  if (level >= pn_levels.x || (level > 0 && pn_share.x <= 0.0)) return -1e30;
+  if (any(greaterThan(texels.zw, vec2(pn_map_size(0))))) return -1e30; // partly beside the map
+  vec2 range = texelFetch(pn_range, ivec3(at, pn_source.x), level).rg;
+  return pn_patch_full(range) && pn_node_owned(texels) ? pn_patch_limit(range, pn_share.x) : -1e30;
+}
+
+vec4 pn_node_texels(ivec2 at, int level) { return vec4(vec2(at), vec2(at) + 1.0) * float(1 << level); }
+
+pn_Patch pn_node(ivec2 at, int level) {
+  pn_Patch p;
+  vec4 texels = pn_node_texels(at, level);
+  vec2 range = texelFetch(pn_range, ivec3(at, pn_source.x), level).rg;
+  p.w = 0.5 * (range.x + range.y);
+  p.most = pn_node_limit(at, level, texels);
+  p.above = pn_node_limit(at >> 1, level + 1, pn_node_texels(at >> 1, level + 1));
+  p.rectangle = vec4(pn_map_st(0, pn_source.w, texels.xy), pn_map_st(0, pn_source.w, texels.zw));
+  p.drawn = p.most > -1e29;
+  if (!p.drawn) return p;
+  // First out to the farthest receiver there is, then to the farthest one found on the way.
+  ivec2 size = pn_levels.zw;
+  float farthest = texelFetch(pn_seen_range, ivec3(0, 0, pn_source.z), pn_levels.y - 1).g;
+  vec2 seen = vec2(p.most, max(farthest, p.above));
+  for (int i = 0; i < 2; i++) {
+    vec2 reach = pn_penumbra_extent(pn_extent(0), p.w, seen.y);
+    seen = pn_seen_between(pn_seen_range, pn_source.z, p.rectangle.xy - reach, p.rectangle.zw + reach, size, pn_levels.y);
+    p.drawn = p.drawn && seen.y <= p.most && seen.x > p.above;
+    seen.y = max(seen.y, p.above);
+  }
+  p.least = seen.y;
+  return p;
+}

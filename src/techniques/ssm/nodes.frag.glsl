@@ -1,0 +1,24 @@
+// A level of the pyramid of counts: how many micropatches there are in and below each node of the occluder map's
+// range pyramid, and whether the node is one itself. With the counts, the list that is drawn is found from its indices
+// (a histogram pyramid), so empty texels cost nothing after this.
+#include "shaders/precision.glsl"
+#include "techniques/ssm/node.glsl"
+
+#if !PN_FIRST
+uniform highp usampler2D pn_work; // the level below
+#endif
+layout(location = 0) out uvec4 pn_out;
+
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  uint count = pn_node(at, pn_source.y).drawn ? 1u : 0u;
+  uint own = count;
+#if !PN_FIRST
+  ivec2 last = textureSize(pn_work, 0) - 1;
+  for (int i = 0; i < 4; i++) {
+    ivec2 child = 2 * at + ivec2(i & 1, i >> 1);
+    if (all(lessThanEqual(child, last))) count += texelFetch(pn_work, child, 0).r;
+  }
+#endif
+  pn_out = uvec4(count, own, 0u, 0u);
+}

@@ -1,0 +1,41 @@
+/* Soft shadow maps: the parts that ssm.c is made of. */
+#ifndef PN_TECHNIQUES_SSM_SSM_H
+#define PN_TECHNIQUES_SSM_SSM_H
+
+#include "techniques/technique.h"
+
+/* The pair's textures that are ours. */
+enum { SSM_COUNTS, SSM_LIST, SSM_LIMITS, SSM_ARGUMENTS, SSM_BATCH, SSM_SOFT, SSM_BOUND_SOFT, SSM_BOUND };
+_Static_assert((int)SSM_BOUND < (int)PN_WORK_MAX, "the pair has a place for every texture");
+
+/* Entries of a list: more micropatches are drawn by several lists, one after the other. */
+enum { SSM_LIST_WIDTH = 1024, SSM_LIST_MOST = 1024 * 1024 };
+
+/* One list of micropatches: those of one side in one map, for one layer of the receiver map. */
+typedef struct {
+  const pn_visibility_request *request;
+  int map, layer; /* of the occluder maps, and within one */
+  int seen_layer;
+  double share; /* of the light's width that merging may move an edge; 0: every texel for itself */
+  int first;    /* entry */
+} ssm_list;
+
+/* Entries there can be at most, and the size of one list. */
+int ssm_list_most(const pn_maps *maps);
+int ssm_list_size(const pn_maps *maps);
+
+/* The pyramid of counts, then the list from entry first on, and its draw's arguments. (extents_gpu.c) */
+pn_result ssm_gpu_count(const ssm_list *list);
+pn_result ssm_gpu_list(const ssm_list *list);
+/* Entries in all: read back. */
+pn_result ssm_gpu_total(const ssm_list *list, int *out);
+pn_result ssm_gpu_shape(const pn_visibility_request *request);
+pn_result ssm_gpu_prepare(pn_gpu *gpu);
+
+/* The same list, made on the CPU from the maps read back. entries: 8 floats each, as list.frag.glsl lays them out;
+ * pn_free frees them. (extents_cpu.c) */
+pn_result ssm_cpu_list(const ssm_list *list, float **entries, int *count);
+/* Puts entries from list->first on where the GPU's list lies. */
+pn_result ssm_cpu_upload(const ssm_list *list, const float *entries, int count);
+
+#endif
