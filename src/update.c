@@ -1,5 +1,4 @@
 /* pn_maps_update: what casts, fitted and drawn. */
-#include <math.h>
 #include <string.h>
 
 #include "light.h"
@@ -29,17 +28,7 @@ static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, i
   return result;
 }
 
-/* What is known of the receivers' w: of the visible ones, else of all the frusta. */
-static double least_receiver(const pn_light *light, const pn_maps_want *want, pn_receiver *const *receivers,
-                             int count) {
-  if (!want->reach || light->has_visible) return light->visible.least[2];
-  pn_region region = pn_region_empty();
-  for (int i = 0; i < count; i++)
-    if (receivers[i] && receivers[i]->set) pn_receiver_frustum(receivers[i], &light->frame, &region);
-  return count > 0 ? region.least[2] : -INFINITY;
-}
-
-static void fit_light(pn_light *light, const pn_maps_want *want, double w_reach) {
+static void fit_light(pn_light *light, const pn_maps_want *want) {
   const pn_light_desc *d = &light->desc;
   pn_fit_request request = {.frame = &light->frame,
                             .near_distance = d->near_distance,
@@ -49,8 +38,7 @@ static void fit_light(pn_light *light, const pn_maps_want *want, double w_reach)
                             .given = d->fit == PN_FIT_GIVEN ? d->fit_bounds : NULL,
                             .visible = light->has_visible ? &light->visible : NULL,
                             .reach = want->reach,
-                            .reach_width = want->reach_width,
-                            .w_reach = w_reach};
+                            .reach_width = want->reach_width};
   pn_fit_maps(light->casters, light->groups, &request, &light->maps.fit);
   if (!light->maps.fit.clamped || light->warned_angle) return;
   light->warned_angle = true;
@@ -100,11 +88,11 @@ static pn_result update_maps(pn_light *light, pn_receiver *const *visible, int v
   if (result != PN_OK) return result;
   pn_maps_want want;
   light->technique->want(light->values, &want);
-  fit_light(light, &want, least_receiver(light, &want, visible, visible_count));
+  fit_light(light, &want);
   if (light->desc.fit == PN_FIT_VISIBLE && light->has_visible && !light->maps.fit.empty) {
     result = find_surfaces(light, visible, visible_count);
     if (result != PN_OK) return result;
-    fit_light(light, &want, least_receiver(light, &want, visible, visible_count));
+    fit_light(light, &want);
   }
   if (!light->maps.fit.empty && pn_want_layers(&want) > 0) result = draw_maps(light, &want);
   light->maps.ready = result == PN_OK;

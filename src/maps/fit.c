@@ -213,12 +213,16 @@ static void make_tiles(const pn_fit_request *request, pn_fit_result *out) {
 
 /* ---- reach ------------------------------------------------------------------------------------------------------- */
 
-/* Receivers behind a rectangle lie at w > 0 however far they are. How far a sun's receivers can be is not known without
- * any: then as far behind the casters as these are wide. */
+/* A w that no receiver lies below. Behind a rectangle w > 0 however far a receiver is. Under a sun it is not known
+ * without visible receivers: then as far behind the casters as these are wide, or as a quarter of that needs to grow
+ * to. */
 static double least_receiver(const fitting *f) {
-  double w = f->request->w_reach, wide = fmax(f->most[0] - f->least[0], f->most[1] - f->least[1]);
-  if (!f->request->frame->sun) return fmax(w, 0);
-  return fmin(w > -1e29 ? w : f->least[2] - wide, f->most[2]);
+  const pn_fit_request *r = f->request;
+  double w = r->visible ? r->visible->least[2] : -INFINITY;
+  if (!r->frame->sun) return fmin(fmax(w, 0), f->most[2]);
+  double wide = fmax(f->most[0] - f->least[0], f->most[1] - f->least[1]);
+  double behind = wide * fmax(1, 0.25 / fmax(r->frame->extent[0], r->frame->extent[1]));
+  return fmin(w > -1e29 ? w : f->least[2] - behind, f->most[2]);
 }
 
 /* Around the casters by their longest shadow, and of that what visible receivers can ask for. */

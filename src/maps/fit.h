@@ -25,10 +25,10 @@ typedef struct {
   int width, height;
   const float *given;       /* PN_FIT_GIVEN's box, or NULL */
   const pn_region *visible; /* receivers that casters must be able to shadow, or NULL */
-  /* Cover what the casters can darken: the light's extent, or width map units, around them, where visible receivers
-   * are. w_reach: no receiver lies below; -INFINITY: not known. */
+  /* Cover what the casters can darken, as far as the light's extent says, or reach_width map units, around them; of
+   * that what visible receivers can ask for. */
   bool reach;
-  double reach_width, w_reach;
+  double reach_width;
 } pn_fit_request;
 
 /* Widens a range to whole steps of a grid that depends on its extent alone, so that what moves a little does not move

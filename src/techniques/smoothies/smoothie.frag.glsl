@@ -1,8 +1,10 @@
 // A smoothie's texel. A point of it at (kappa, w) gives a receiver at w_R the visibility kappa / (w - w_R). Its
-// reciprocal is linear in w_R, so its values at a few w_R stand for all of them; where smoothies overlap the least
-// visibility counts, and so does the greatest reciprocal. It is stored negative, and the minimum is kept.
+// reciprocal is a line over w_R. Where smoothies overlap the least visibility counts, and so does the greatest
+// reciprocal; it is stored negative, and the minimum is kept. Values at two close w_R tell the whole line of the one
+// that wins there: at the farthest receiver, and half way up to the nearest caster.
 #include "shaders/precision.glsl"
 #include "maps/maps.glsl"
+#include "techniques/smoothies/samples.glsl"
 
 uniform highp vec4 pn_width; // fixed width in map units; 0: the light's
 in highp vec2 pn_offset_out;
@@ -23,7 +25,5 @@ float pn_corner_kappa(vec2 o) {
 void main() {
   float w = pn_linear.z, kappa = pn_shape.x > 0.5 ? pn_corner_kappa(pn_offset_out) : pn_linear.x;
   if (pn_width.x > 0.0 && !pn_is_sun(0)) kappa *= w;
-  vec2 range = vec2(pn_lights[0].extent.w, pn_lights[0].range.x);
-  vec4 w_receiver = mix(range.xxxx, range.yyyy, vec4(0.0, 1.0, 2.0, 3.0) / 3.0);
-  pn_out = (w_receiver - w) / max(kappa, 1e-9 * (range.y - range.x));
+  pn_out = (pn_samples(0) - w) / max(kappa, 1e-9 * pn_sample_step(0));
 }

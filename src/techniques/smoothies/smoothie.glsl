@@ -5,27 +5,23 @@
 #include "maps/maps.glsl"
 #include "casters/edges.glsl"
 
-uniform highp ivec4 pn_mode; // tile, 1 for cones
+uniform highp ivec4 pn_mode; // tile, 1 for sheets and cones
 uniform highp vec4 pn_width; // fixed width in map units; 0: the light's
 
 // The first component of pn_corners where an edge has no smoothie to draw.
 const float pn_no_smoothie = 9.0;
 
 bool pn_fixed() { return pn_width.x > 0.0; }
-bool pn_cones() { return pn_mode.y != 0; }
-
-// Half extents that smoothies are measured by.
-vec2 pn_smoothie_extent() { return pn_fixed() ? vec2(pn_width.x) : pn_extent(0); }
+// Of a fixed width, cones are the rounded corners that rectangles have too.
+bool pn_cones() { return pn_mode.y != 0 && !pn_fixed(); }
 
 // A_n, half the light's width along a unit normal.
-float pn_width_along(vec2 n) {
-  return pn_fixed() && !pn_cones() ? pn_width.x : dot(abs(n), pn_smoothie_extent());
-}
+float pn_width_along(vec2 n) { return pn_fixed() ? pn_width.x : dot(abs(n), pn_extent(0)); }
 
 // The kappa at which the farthest receiver sees the whole light past an edge at w.
 float pn_reach(float w) { return pn_fixed() ? 1.0 : max(w - pn_lights[0].extent.w, 0.0); }
 
 vec2 pn_across(vec2 n) {
-  return pn_cones() ? vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0) * pn_smoothie_extent()
+  return pn_cones() ? vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0) * pn_extent(0)
                     : n * pn_width_along(n);
 }

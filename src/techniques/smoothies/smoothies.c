@@ -17,7 +17,7 @@ static const pn_parameter parameters[COUNT] = {
     [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/smoothies.md",
                 PN_CHOICE, 0, 2, 1, presets},
     [GEOMETRY] = {"geometry", "", "rectangles along edges and rounded corners, or sheets and cones shaped by the light",
-                  "Chan and Durand 2003; Haines 2001, Wyman and Hansen 2003", PN_CHOICE, 0, 1, 0, geometries},
+                  "Chan and Durand 2003; Haines 2001, Wyman and Hansen 2003", PN_CHOICE, 0, 1, 1, geometries},
     [WIDTH] = {"width", "map units", "how far smoothies reach: by the light's real size, or the same everywhere",
                "Chan and Durand 2003", PN_FLOAT, 0, 100, 0, width_words},
     [FILTER] = {"filter", "", "looks up 2 x 2 texels and weighs the results", "Chan and Durand 2003", PN_BOOL, 0, 1, 1,
@@ -26,7 +26,7 @@ static const pn_parameter parameters[COUNT] = {
 
 static void preset(int choice, double *values) {
   values[PRESET] = choice;
-  values[GEOMETRY] = choice == 2;
+  values[GEOMETRY] = 1;
   values[WIDTH] = 0;
   values[FILTER] = choice != 0;
 }

@@ -1,13 +1,16 @@
 // The lookup: behind the depth map nothing is seen of the light, behind a smoothie the part that it says, else all.
 #include "search/lookup.glsl"
+#include "techniques/smoothies/samples.glsl"
 
-// What the smoothies over a texel leave of the light for a receiver at w: see smoothie.frag.glsl.
+// What the smoothies over a texel leave of the light for a receiver at w: see smoothie.frag.glsl. The reciprocal is a
+// convex function of w that falls, so its lines are nowhere above it except between a pair's samples: there the upper
+// one of these bounds it.
 float pn_smoothie(int light, highp sampler2DArray smoothies, int map, ivec2 texel, float w) {
-  vec4 stored = texelFetch(smoothies, ivec3(texel, map), 0);
-  float near = pn_lights[light].range.x, far = pn_lights[light].extent.w;
-  float at = 3.0 * (w - far) / (near - far), low = clamp(floor(at), 0.0, 2.0);
-  vec2 pair = low < 0.5 ? stored.xy : low < 1.5 ? stored.yz : stored.zw;
-  float reciprocal = -mix(pair.x, pair.y, at - low);
+  vec4 stored = -texelFetch(smoothies, ivec3(texel, map), 0), at = pn_samples(light);
+  vec2 above = (w - at.yw) / pn_sample_step(light);
+  vec2 lines = stored.yw + above * (stored.yw - stored.xz);
+  if (above.y < 0.0 && above.y > -1.0) lines.y = stored.w;
+  float reciprocal = max(lines.x, lines.y);
   return reciprocal > 0.0 ? 1.0 / reciprocal : 1e30;
 }
 
@@ -45,8 +48,9 @@ float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray sm
   vec2 f = filtered ? at - vec2(base) : vec2(0.0);
   // What is turned away from the light's centre is out of this shadow, which is the centre's.
   bool asks = r.k < 0.0 && all(greaterThanEqual(base, ivec2(-1))) && all(lessThan(base, size));
-  // Where the horizon cuts the light, visibility is the share of what lies above it.
-  float above = min(-r.k / dot(abs(r.n.xy), pn_extent(light)), 1.0);
+  // An edge in the receiver's own plane hides nothing: in the light's plane it is the horizon, which lies -k / |n_uv|
+  // from the centre or farther along the edge's normal, where the smoothie ends at the light's half diagonal at most.
+  float above = min(-r.k / max(length(r.n.xy) * length(pn_extent(light)), 1e-30), 1.0);
   // A fixed width under a sun: distances count from the nearest caster's plane.
   bool scaled = pn_parameter(light, 2) > 0.0 && pn_is_sun(light);
   float share = (scaled ? max(pn_lights[light].range.x - r.m.z, 0.0) : 1.0) / above;
