@@ -214,14 +214,14 @@ static void make_tiles(const pn_fit_request *request, pn_fit_result *out) {
 /* ---- reach ------------------------------------------------------------------------------------------------------- */
 
 /* A w that no receiver lies below. Behind a rectangle w > 0 however far a receiver is. Under a sun it is not known
- * without visible receivers: then as far behind the casters as these are wide, or as a quarter of that needs to grow
- * to. */
+ * without visible receivers: then four times as far behind the casters as these are wide, or as far as it takes for
+ * the map to grow by a quarter of that width. */
 static double least_receiver(const fitting *f) {
   const pn_fit_request *r = f->request;
   double w = r->visible ? r->visible->least[2] : -INFINITY;
   if (!r->frame->sun) return fmin(fmax(w, 0), f->most[2]);
   double wide = fmax(f->most[0] - f->least[0], f->most[1] - f->least[1]);
-  double behind = wide * fmax(1, 0.25 / fmax(r->frame->extent[0], r->frame->extent[1]));
+  double behind = wide * fmax(4, 0.25 / fmax(r->frame->extent[0], r->frame->extent[1]));
   return fmin(w > -1e29 ? w : f->least[2] - behind, f->most[2]);
 }
 

@@ -55,11 +55,12 @@ float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray sm
   bool scaled = pn_parameter(light, 2) > 0.0 && pn_is_sun(light);
   float share = (scaled ? max(pn_lights[light].range.x - r.m.z, 0.0) : 1.0) / above;
   vec3 plane = pn_plane(light, r);
-  float hidden = 0.0;
+  vec2 sum = vec2(0.0); // hidden, seen: one of them is exactly 0 where nothing, or everything, is
   for (int i = 0; i < (asks ? filtered ? 4 : 1 : 0); i++) {
     ivec2 step = ivec2(i & 1, i >> 1);
     vec2 weight = mix(1.0 - f, f, vec2(step));
-    hidden += weight.x * weight.y * (1.0 - pn_texel_sees(light, maps, smoothies, map, r, base + step, plane, share));
+    float sees = pn_texel_sees(light, maps, smoothies, map, r, base + step, plane, share);
+    sum += weight.x * weight.y * vec2(1.0 - sees, sees);
   }
-  return 1.0 - hidden;
+  return asks && sum.y == 0.0 ? 0.0 : 1.0 - sum.x;
 }
