@@ -35,7 +35,7 @@ static void print_preset(FILE *file, const pn_technique *technique, const pn_par
 
 void print_technique(FILE *file, const pn_technique *technique) {
   fprintf(file, "%s: %s\n  %s\n", technique->name, technique->title, technique->help);
-  if (technique->needs_meshes) fputs("  needs triangle meshes: draw callbacks cast no shadow with it\n", file);
+  if (technique->needs_meshes) fputs("  needs triangle meshes: what draw callbacks draw casts a hard shadow at most\n", file);
   if (technique->needs_closed) fputs("  casters should be closed surfaces\n", file);
   if (!technique->self_shadows) fputs("  casters do not shadow themselves\n", file);
   if (!technique->parameter_count) fputs("  no parameters\n", file);

@@ -383,7 +383,7 @@ typedef struct {
   const char *name, *title, *help;
   const pn_parameter *parameters;
   int parameter_count;
-  int needs_meshes; /* draw callbacks cast no shadow with it */
+  int needs_meshes; /* what draw callbacks draw casts a hard shadow at most: there is no mesh to look at */
   int needs_closed; /* casters should be closed surfaces */
   int forward;      /* has a pn_visibility() for the host's own shaders */
   int self_shadows; /* casters may be receivers too */
