@@ -33,13 +33,29 @@ void save_abandon(void) {
   interrupt_watch_folder(NULL);
 }
 
-int save_planes(const struct save *save, const char *name, const struct exr_plane *planes, int plane_count) {
+static int save_sized(const struct save *save, const char *name, int width, int height, const struct exr_plane *planes,
+                      int plane_count) {
   char *path = NULL;
   if (asprintf(&path, "%s/%s", save->folder, name) < 0) return memory_error();
-  int status = exr_write(path, save->width, save->height, planes, plane_count);
+  int status = exr_write(path, width, height, planes, plane_count);
   if (!status) fprintf(save->people, "%s\n", path);
   free(path);
   return status;
+}
+
+int save_planes(const struct save *save, const char *name, const struct exr_plane *planes, int plane_count) {
+  return save_sized(save, name, save->width, save->height, planes, plane_count);
+}
+
+int save_layers(const struct save *save, const char *name, int width, int height, int layers, const float *values) {
+  enum { MOST = 9 }; /* one digit: the names stay in EXR's alphabetical order */
+  struct exr_plane planes[MOST];
+  char names[MOST][12] = {"Y"};
+  for (int i = 0; i < layers && i < MOST; i++) {
+    if (i) snprintf(names[i], sizeof names[i], "layer%d.Y", i + 1);
+    planes[i] = (struct exr_plane){names[i], values + (size_t)i * (size_t)width * (size_t)height, 1};
+  }
+  return save_sized(save, name, width, height, planes, layers < MOST ? layers : MOST);
 }
 
 int save_vectors(const struct save *save, const char *name, const float *vectors) {

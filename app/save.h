@@ -21,6 +21,8 @@ int save_check(const char *folder);
 void save_abandon(void);
 
 int save_planes(const struct save *save, const char *name, const struct exr_plane *planes, int plane_count);
+/* An image of its own size: layer after layer as Y, layer2.Y, layer3.Y, ... */
+int save_layers(const struct save *save, const char *name, int width, int height, int layers, const float *values);
 int save_vectors(const struct save *save, const char *name, const float *vectors); /* X, Y, Z */
 int save_scalars(const struct save *save, const char *name, const float *values);  /* Y */
 

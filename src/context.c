@@ -119,9 +119,9 @@ pn_result pn_timing(pn_context *context, int enabled) {
   return PN_OK;
 }
 
-pn_result pn_debug(pn_context *context, int enabled) {
+pn_result pn_debug(pn_context *context, int flags) {
   if (!context) return PN_ERROR_ARGUMENT;
-  context->gpu.debug = enabled != 0;
+  context->gpu.debug = flags;
   return PN_OK;
 }
 

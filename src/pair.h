@@ -5,7 +5,7 @@
 #include "context.h"
 #include "maps/receiver_map.h"
 
-enum { PN_WORK_MAX = 8 };
+enum { PN_WORK_MAX = 10 };
 
 typedef struct pn_pair {
   pn_object *light, *receiver;
@@ -14,8 +14,10 @@ typedef struct pn_pair {
   pn_texture work[PN_WORK_MAX]; /* a technique's own */
   pn_receiver_map seen;         /* for techniques that scatter */
   pn_buffer arguments;          /* of draws that the GPU counts */
+  pn_soft_shadow_map soft;      /* of the last draw; no texture: none */
   bool warned;                  /* a technique's warning was given */
   pn_texture search;            /* what a search did, when debugging */
+  pn_texture bound;             /* of the error, when debugging, where the technique has one */
   bool drawn;
   pn_clock clock;
   struct pn_pair *next;

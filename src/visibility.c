@@ -23,6 +23,7 @@ static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pn_pair
   pn_gpu *gpu = pn_light_gpu(light);
   const pn_technique_class *technique = light->technique;
   pn_result result = PN_OK;
+  memset(&pair->soft, 0, sizeof pair->soft);
   if (light->maps.fit.empty) {
     result = fill_with_light(gpu, target, receiver->desc.width, receiver->desc.height);
     pn_clock_mark(gpu, &pair->clock, "visibility");
@@ -105,6 +106,19 @@ pn_result pn_result_image(pn_light *light, pn_receiver *receiver, pn_image *out)
   return PN_OK;
 }
 
+pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver, pn_soft_shadow_map *out) {
+  if (!light) return PN_ERROR_ARGUMENT;
+  pn_gpu *gpu = pn_light_gpu(light);
+  if (!receiver || !out)
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
+                   "pn_soft_shadow_map_image: receiver or out is NULL");
+  pn_pair *pair = pn_pair_find(&light->object, &receiver->object);
+  if (!pair || !pair->soft.image.texture)
+    return pn_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "the pair's last result has no soft shadow map");
+  *out = pair->soft;
+  return PN_OK;
+}
+
 /* ---- into the host's texture ------------------------------------------------------------------------------------- */
 
 static void texture_extent(pn_gpu *gpu, GLenum target, pn_gl texture, GLint size[3]) {
@@ -167,6 +181,8 @@ int pn_debug_image(pn_light *light, pn_receiver *receiver, int index, const char
       {"range", &light->maps.range},
       {"low", pair ? &pair->low : NULL},
       {"search", pair ? &pair->search : NULL},
+      {"receivers", pair ? &pair->seen.layers : NULL},
+      {"bound", pair ? &pair->bound : NULL},
       {"visibility", pair ? &pair->image : NULL},
   };
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {

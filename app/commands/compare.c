@@ -22,7 +22,7 @@ struct entry {
   cJSON *described; /* technique, label, parameters */
   pn_light *light;
   float *visibility;
-  float *search; /* NULL: the technique does not search, or nobody asks */
+  struct insides insides; /* empty where nobody asks */
   uint8_t *picture;
   struct report_stage stages[STAGES_MAX];
 };
@@ -47,12 +47,26 @@ static size_t pixel_count(const struct comparison *c) { return (size_t)c->view->
 
 /* ---- before the work: what can be wrong with the request --------------------------------------------------------- */
 
-/* "NN-LABEL.search.exr"; malloc'ed; NULL: out of memory. */
-static char *search_name(const struct entry *e) {
+/* "NN-LABEL.KIND.exr"; malloc'ed; NULL: out of memory. */
+static char *inside_name(const struct entry *e, const char *kind) {
   int stem = (int)(strlen(e->file) - strlen(".exr"));
-  char *name = malloc((size_t)stem + sizeof ".search.exr");
-  if (name) sprintf(name, "%.*s.search.exr", stem, e->file);
+  size_t size = strlen(e->file) + strlen(kind) + 2;
+  char *name = malloc(size);
+  if (name) snprintf(name, size, "%.*s.%s.exr", stem, e->file, kind);
   return name;
+}
+
+static const char *const inside_kinds[] = {"search", "ssm", "bound"};
+enum { INSIDE_KINDS = sizeof inside_kinds / sizeof *inside_kinds };
+
+static int claim_insides(struct claims *claims, const char *folder, const struct entry *e) {
+  int status = STATUS_OK;
+  for (int i = 0; i < INSIDE_KINDS && !status; i++) {
+    char *name = inside_name(e, inside_kinds[i]);
+    status = name ? claim_saved(claims, folder, name) : memory_error();
+    free(name);
+  }
+  return status;
 }
 
 static int claim_files(const struct comparison *c) {
@@ -61,10 +75,8 @@ static int claim_files(const struct comparison *c) {
   int status = claim_options(&claims, c->options);
   if (!status && folder) status = claim_saved(&claims, folder, "reference.exr");
   for (int i = 0; i < c->count && folder && !status; i++) {
-    char *search = search_name(&c->entries[i]);
-    status = search ? claim_saved(&claims, folder, c->entries[i].file) : memory_error();
-    if (!status) status = claim_saved(&claims, folder, search);
-    free(search);
+    status = claim_saved(&claims, folder, c->entries[i].file);
+    if (!status) status = claim_insides(&claims, folder, &c->entries[i]);
   }
   claims_free(&claims);
   return status;
@@ -135,26 +147,31 @@ static int draw_techniques(struct comparison *c) {
   return status;
 }
 
-/* What searches did, for --save-dir and --json: outside the timed frames. */
-static int look_at_searches(struct comparison *c) {
+static void sum_up_search(struct report_technique *t, const float *search, size_t count) {
+  for (size_t p = 0; search && p < count; p++) {
+    const float *pixel = search + 4 * p;
+    if (pixel[0] < 3) continue; /* decided without a look at primitives */
+    t->search_pixels++;
+    t->search_visited += pixel[1];
+    t->search_primitives += pixel[2];
+    t->search_window += pixel[3];
+  }
+  double pixels = t->search_pixels > 0 ? t->search_pixels : 1;
+  t->searched = search != NULL;
+  t->search_visited /= pixels;
+  t->search_primitives /= pixels;
+  t->search_window /= pixels;
+}
+
+/* What techniques did on the way, for --save-dir and --json: outside the timed frames. The bound takes long, so it comes
+ * with the files only. */
+static int look_inside(struct comparison *c) {
   int status = STATUS_OK;
   for (int i = 0; i < c->count && !status && (c->options->save_dir || c->options->json); i++) {
     struct entry *e = &c->entries[i];
-    struct report_technique *t = &c->techniques[i];
-    e->search = malloc(4 * pixel_count(c) * sizeof *e->search);
-    status = e->search ? client_search(c->host.client, e->light, e->search, &t->searched) : memory_error();
-    for (size_t p = 0; !status && t->searched && p < pixel_count(c); p++) {
-      const float *pixel = e->search + 4 * p;
-      if (pixel[0] < 3) continue; /* decided without a look at primitives */
-      t->search_pixels++;
-      t->search_visited += pixel[1];
-      t->search_primitives += pixel[2];
-      t->search_window += pixel[3];
-    }
-    double count = t->search_pixels > 0 ? t->search_pixels : 1;
-    t->search_visited /= count;
-    t->search_primitives /= count;
-    t->search_window /= count;
+    int flags = PN_DEBUG_SEARCH | (c->options->save_dir ? PN_DEBUG_BOUND : 0);
+    status = client_insides(c->host.client, e->light, flags, &e->insides);
+    if (!status) sum_up_search(&c->techniques[i], e->insides.search, pixel_count(c));
   }
   return status;
 }
@@ -181,6 +198,8 @@ static int measure_errors(struct comparison *c) {
       warning("%s: %zu shadow pixels have no finite visibility: its errors are undefined", c->entries[i].spec,
               error->not_finite);
     shadow_pixels += error->pixels;
+    error_bound(c->truth.visibility, c->entries[i].visibility, c->mask, pixel_count(c), c->entries[i].insides.bound,
+                &c->techniques[i].bound);
   }
   if (!shadow_pixels) warning("no shadow falls on what the camera sees and the light faces: errors are undefined");
   return STATUS_OK;
@@ -279,14 +298,34 @@ static void describe(struct comparison *c) {
 /* With JSON on standard output, people's lines make room. */
 static FILE *people(const struct options *o) { return o->json && strcmp(o->json, "-") == 0 ? stderr : stdout; }
 
-static int save_search(const struct save *save, const struct entry *e) {
-  const struct exr_plane planes[4] = {{"class", e->search, 4},
-                                      {"primitives", e->search + 2, 4},
-                                      {"visited", e->search + 1, 4},
-                                      {"window", e->search + 3, 4}};
-  char *name = search_name(e);
-  int status = name ? save_planes(save, name, planes, 4) : memory_error();
-  free(name);
+static int save_search(const struct save *save, const char *name, const struct insides *in) {
+  const struct exr_plane planes[4] = {{"class", in->search, 4},
+                                      {"primitives", in->search + 2, 4},
+                                      {"visited", in->search + 1, 4},
+                                      {"window", in->search + 3, 4}};
+  return save_planes(save, name, planes, 4);
+}
+
+static int save_soft(const struct save *save, const char *name, const struct insides *in) {
+  return save_layers(save, name, in->soft_width, in->soft_height, in->soft_layers, in->soft);
+}
+
+static int save_bound(const struct save *save, const char *name, const struct insides *in) {
+  return save_scalars(save, name, in->bound);
+}
+
+static int save_insides(const struct save *save, const struct entry *e) {
+  static int (*const savers[INSIDE_KINDS])(const struct save *, const char *,
+                                           const struct insides *) = {save_search, save_soft, save_bound};
+  const struct insides *in = &e->insides;
+  const float *const there[INSIDE_KINDS] = {in->search, in->soft, in->bound};
+  int status = STATUS_OK;
+  for (int i = 0; i < INSIDE_KINDS && !status; i++) {
+    if (!there[i]) continue;
+    char *name = inside_name(e, inside_kinds[i]);
+    status = name ? savers[i](save, name, in) : memory_error();
+    free(name);
+  }
   return status;
 }
 
@@ -296,7 +335,7 @@ static int save_buffers(const struct comparison *c) {
   if (!status) status = save_scalars(&save, "reference.exr", c->truth.visibility);
   for (int i = 0; i < c->count && !status; i++) {
     status = save_scalars(&save, c->entries[i].file, c->entries[i].visibility);
-    if (!status && c->techniques[i].searched) status = save_search(&save, &c->entries[i]);
+    if (!status) status = save_insides(&save, &c->entries[i]);
   }
   return status;
 }
@@ -365,7 +404,7 @@ static int compare(struct comparison *c) {
   if (!status) status = view_read(c->host.gbuffer, c->scene, &c->view);
   if (!status) status = mark_pixels(c);
   if (!status) status = draw_techniques(c);
-  if (!status) status = look_at_searches(c);
+  if (!status) status = look_inside(c);
   if (!status)
     status =
         truth_trace(c->scene, c->host.gbuffer, c->view, o->reference_samples, !o->given[OPTION_NO_CACHE], &c->truth);
@@ -381,7 +420,7 @@ static void free_comparison(struct comparison *c) {
     free(c->entries[i].file);
     cJSON_Delete(c->entries[i].described);
     free(c->entries[i].visibility);
-    free(c->entries[i].search);
+    insides_free(&c->entries[i].insides);
     free(c->entries[i].picture);
   }
   free(c->entries);

@@ -52,7 +52,8 @@ static int add_casters(struct client *client, const struct gpu_scene *gpu) {
     pn_mesh *mesh = &known[instance->mesh];
     pn_instance ignored;
     if (!mesh->id) status = add_mesh(client, gpu, instance->mesh, mesh);
-    if (!status) status = client_check(client, pn_instance_add(client->casters, *mesh, instance->scene_from_object, 0, &ignored));
+    if (!status)
+      status = client_check(client, pn_instance_add(client->casters, *mesh, instance->scene_from_object, 0, &ignored));
   }
   free(known);
   return status;
@@ -155,7 +156,8 @@ static int warm_up(struct client *client, const pn_light_desc *like, const char 
   return status;
 }
 
-int client_light(struct client *client, const struct setup *setup, const struct light *light, const char *spec, pn_light **out) {
+int client_light(struct client *client, const struct setup *setup, const struct light *light, const char *spec,
+                 pn_light **out) {
   pn_light_desc desc;
   describe_light(setup, light, &desc);
   int status = client_check(client, pn_light_create(client->context, out));
@@ -175,16 +177,12 @@ int client_frame(struct client *client, pn_light *light) {
   return status ? status : client_check(client, pn_visibility(light, client->receiver));
 }
 
-/* Texels of a texture of the view's size, top row first. */
-static int read_image(const struct client *client, pn_gl texture, GLenum layout, size_t channels, float *out) {
-  size_t row = (size_t)client->width * channels;
+/* GL's rows are bottom first. */
+static int flip_rows(float *image, size_t row, int height) {
   float *below = malloc(row * sizeof *below);
   if (!below) return memory_error();
-  glBindTexture(GL_TEXTURE_2D, texture);
-  glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glGetTexImage(GL_TEXTURE_2D, 0, layout, GL_FLOAT, out);
-  for (int y = 0; y < client->height / 2; y++) { /* GL's rows are bottom first */
-    float *a = out + (size_t)y * row, *b = out + (size_t)(client->height - 1 - y) * row;
+  for (int y = 0; y < height / 2; y++) {
+    float *a = image + (size_t)y * row, *b = image + (size_t)(height - 1 - y) * row;
     memcpy(below, b, row * sizeof *below);
     memcpy(b, a, row * sizeof *below);
     memcpy(a, below, row * sizeof *below);
@@ -193,23 +191,84 @@ static int read_image(const struct client *client, pn_gl texture, GLenum layout,
   return STATUS_OK;
 }
 
+/* Texels of a texture of the view's size, top row first. */
+static int read_image(const struct client *client, pn_gl texture, GLenum layout, size_t channels, float *out) {
+  glBindTexture(GL_TEXTURE_2D, texture);
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glGetTexImage(GL_TEXTURE_2D, 0, layout, GL_FLOAT, out);
+  return flip_rows(out, (size_t)client->width * channels, client->height);
+}
+
 int client_visibility(struct client *client, pn_light *light, float *out) {
   pn_image image;
   int status = client_check(client, pn_result_image(light, client->receiver, &image));
   return status ? status : read_image(client, image.texture, GL_RED, 1, out);
 }
 
-int client_search(struct client *client, pn_light *light, float *out, int *found) {
-  *found = 0;
-  int status = client_check(client, pn_debug(client->context, 1));
-  if (!status) status = client_check(client, pn_visibility(light, client->receiver));
-  if (!status) status = client_check(client, pn_debug(client->context, 0));
+/* ---- what a technique did on the way ----------------------------------------------------------------------------- */
+
+static int read_debug(struct client *client, pn_light *light, const char *wanted, GLenum layout, size_t channels,
+                      float **out) {
   const char *name;
   pn_image image;
-  for (int i = 0; !status && !*found && pn_debug_image(light, client->receiver, i, &name, &image); i++) {
-    if (strcmp(name, "search") != 0 || image.width != client->width || image.height != client->height) continue;
-    *found = 1;
-    status = read_image(client, image.texture, GL_RGBA, 4, out);
+  for (int i = 0; pn_debug_image(light, client->receiver, i, &name, &image); i++) {
+    if (strcmp(name, wanted) != 0 || image.width != client->width || image.height != client->height) continue;
+    *out = malloc((size_t)client->width * (size_t)client->height * channels * sizeof **out);
+    return *out ? read_image(client, image.texture, layout, channels, *out) : memory_error();
   }
+  return STATUS_OK;
+}
+
+/* The sides are merged by maximum, as the technique does. */
+static void merge_sides(const pn_soft_shadow_map *map, const float *all, float *out) {
+  size_t count = (size_t)map->image.width * (size_t)map->image.height * (size_t)map->layers;
+  for (size_t i = 0; i < count; i++) {
+    out[i] = all[i];
+    for (int side = 1; side < map->sides; side++)
+      if (all[(size_t)side * count + i] > out[i]) out[i] = all[(size_t)side * count + i];
+  }
+}
+
+static int read_soft(struct client *client, pn_light *light, struct insides *out) {
+  pn_soft_shadow_map map;
+  if (pn_soft_shadow_map_image(light, client->receiver, &map) != PN_OK) {
+    client->reason[0] = 0;
+    return STATUS_OK;
+  }
+  size_t texels = (size_t)map.image.width * (size_t)map.image.height;
+  float *all = malloc(texels * (size_t)map.image.layers * sizeof *all);
+  out->soft = malloc(texels * (size_t)map.layers * sizeof *out->soft);
+  if (!all || !out->soft) {
+    free(all);
+    return memory_error();
+  }
+  glBindTexture(GL_TEXTURE_2D_ARRAY, map.image.texture);
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glGetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_RED, GL_FLOAT, all);
+  merge_sides(&map, all, out->soft);
+  free(all);
+  out->soft_width = map.image.width;
+  out->soft_height = map.image.height;
+  out->soft_layers = map.layers;
+  int status = STATUS_OK;
+  for (int i = 0; i < map.layers && !status; i++)
+    status = flip_rows(out->soft + (size_t)i * texels, (size_t)map.image.width, map.image.height);
   return status;
+}
+
+int client_insides(struct client *client, pn_light *light, int debug_flags, struct insides *out) {
+  memset(out, 0, sizeof *out);
+  int status = client_check(client, pn_debug(client->context, debug_flags));
+  if (!status) status = client_frame(client, light);
+  if (!status) status = client_check(client, pn_debug(client->context, 0));
+  if (!status && debug_flags & PN_DEBUG_SEARCH) status = read_debug(client, light, "search", GL_RGBA, 4, &out->search);
+  if (!status && debug_flags & PN_DEBUG_BOUND) status = read_debug(client, light, "bound", GL_RED, 1, &out->bound);
+  return status ? status : read_soft(client, light, out);
+}
+
+void insides_free(struct insides *insides) {
+  free(insides->search);
+  free(insides->bound);
+  free(insides->soft);
+  memset(insides, 0, sizeof *insides);
 }

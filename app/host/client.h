@@ -20,7 +20,8 @@ int client_create(const struct gpu_scene *gpu, const struct gbuffer *gbuffer, pn
 void client_free(struct client **client); /* and its lights */
 
 /* A light of the set-up's map and fit, with a technique whose programs the driver has compiled. spec NULL: the library's default. light: the scene's own, or another. */
-int client_light(struct client *client, const struct setup *setup, const struct light *light, const char *spec, pn_light **out);
+int client_light(struct client *client, const struct setup *setup, const struct light *light, const char *spec,
+                 pn_light **out);
 
 /* Maps and visibility of one frame. */
 int client_frame(struct client *client, pn_light *light);
@@ -28,9 +29,15 @@ int client_frame(struct client *client, pn_light *light);
 /* The light's last visibility, one float a pixel, top row first. */
 int client_visibility(struct client *client, pn_light *light, float *out);
 
-/* What the light's search did for each pixel, four floats a pixel (see pn_debug), top row first: one more frame is drawn for it. *found is 0 when
- * its technique does not search. */
-int client_search(struct client *client, pn_light *light, float *out, int *found);
+/* What the light's technique did on the way, for the view of its last frame: one more frame is drawn for it. */
+struct insides {
+  float *search; /* four floats a pixel (see pn_debug), top row first; NULL: the technique does not search */
+  float *bound;  /* of the error, one float a pixel, top row first; NULL: the technique has none */
+  float *soft;   /* the soft shadow map: for each layer of receivers what is hidden, top row first; NULL: none */
+  int soft_width, soft_height, soft_layers;
+};
+int client_insides(struct client *client, pn_light *light, int debug_flags, struct insides *out);
+void insides_free(struct insides *insides);
 
 /* Turns a library result into the program's line and exit status; PN_OK is STATUS_OK. */
 int client_check(struct client *client, pn_result result);

@@ -40,3 +40,19 @@ int error_measure(const float *reference, const float *result, const uint8_t *ma
   free(sizes);
   return 1;
 }
+
+void error_bound(const float *reference, const float *result, const uint8_t *mask, size_t count, const float *bound,
+                 struct error_bound *out) {
+  *out = (struct error_bound){0};
+  size_t held = 0;
+  for (size_t i = 0; bound && i < count; i++) {
+    if (!mask[i] || !is_shadow(reference[i], result[i])) continue;
+    out->pixels++;
+    out->mean += bound[i];
+    out->max = fmax(out->max, bound[i]);
+    held += fabs((double)result[i] - (double)reference[i]) <= bound[i];
+  }
+  if (!out->pixels) return;
+  out->mean /= (double)out->pixels;
+  out->held = (double)held / (double)out->pixels;
+}

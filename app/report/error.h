@@ -24,4 +24,13 @@ struct error_statistics {
 int error_measure(const float *reference, const float *result, const uint8_t *mask, size_t count,
                   struct error_statistics *out);
 
+/* A technique's own bound of its error, over the same pixels: its mean and maximum, and the share of pixels whose error it
+ * holds. bound may be NULL: no pixels. */
+struct error_bound {
+  double mean, max, held;
+  size_t pixels;
+};
+void error_bound(const float *reference, const float *result, const uint8_t *mask, size_t count, const float *bound,
+                 struct error_bound *out);
+
 #endif

@@ -163,7 +163,8 @@ static void write_stage(FILE *file, const struct report *report, const int *orde
   write_choices(file, report, "right", report->technique_count ? order[0] + 1 : 0);
   fputs("<span><label><input type=\"radio\" name=\"view\" value=\"picture\" checked> pictures</label>\n"
         "<label><input type=\"radio\" name=\"view\" value=\"error\"> error maps</label></span>\n</div>\n"
-        "<div class=\"frame\"><div id=\"stage\"><img id=\"right\" alt=\"right\" draggable=\"false\"><img id=\"left\" alt=\"left\" "
+        "<div class=\"frame\"><div id=\"stage\"><img id=\"right\" alt=\"right\" draggable=\"false\"><img id=\"left\" "
+        "alt=\"left\" "
         "draggable=\"false\">"
         "<div id=\"bar\"></div></div>\n"
         "<input id=\"split\" type=\"range\" min=\"0\" max=\"100\" step=\"0.1\" value=\"50\" aria-label=\"border "

@@ -44,8 +44,18 @@ static int add_times(cJSON *object, const struct report_technique *technique) {
 static int add_search(cJSON *object, const struct report_technique *technique) {
   if (!technique->searched) return 1;
   cJSON *item = cJSON_AddObjectToObject(object, "search");
-  return item && add_number(item, "pixels", technique->search_pixels) && add_number(item, "visited", technique->search_visited) &&
-         add_number(item, "primitives", technique->search_primitives) && add_number(item, "window", technique->search_window);
+  return item && add_number(item, "pixels", technique->search_pixels) &&
+         add_number(item, "visited", technique->search_visited) &&
+         add_number(item, "primitives", technique->search_primitives) &&
+         add_number(item, "window", technique->search_window);
+}
+
+/* The technique's own bound of its error, held against the error, over shadow pixels. */
+static int add_bound(cJSON *object, const struct error_bound *bound) {
+  if (!bound->pixels) return 1;
+  cJSON *item = cJSON_AddObjectToObject(object, "bound");
+  return item && add_number(item, "mean", bound->mean) && add_number(item, "max", bound->max) &&
+         add_number(item, "held", bound->held);
 }
 
 static int add_result(cJSON *results, const struct report_technique *technique) {
@@ -56,7 +66,8 @@ static int add_result(cJSON *results, const struct report_technique *technique) 
   }
   return add_text(item, "technique", technique->name) && add_text(item, "label", technique->label) &&
          add_text(item, "file", technique->file) && add_copy(item, "parameters", technique->parameters) &&
-         add_error(item, &technique->error) && add_times(item, technique) && add_search(item, technique);
+         add_error(item, &technique->error) && add_times(item, technique) && add_search(item, technique) &&
+         add_bound(item, &technique->bound);
 }
 
 static int fill(cJSON *json, const struct report *report) {

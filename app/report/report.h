@@ -29,7 +29,8 @@ struct report_technique {
   double time_median, time_least, time_most; /* milliseconds a frame */
   const struct report_stage *stages;
   int stage_count;
-  int searched; /* nonzero: means over the pixels whose search looked at primitives */
+  struct error_bound bound; /* pixels 0: the technique has none, or nobody asks */
+  int searched;             /* nonzero: means over the pixels whose search looked at primitives */
   double search_pixels, search_visited, search_primitives, search_window;
   const float *visibility;
   const uint8_t *picture; /* RGB, sRGB, 8 bits */

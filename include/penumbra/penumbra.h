@@ -439,10 +439,26 @@ PN_API pn_result pn_result_image(pn_light *light, pn_receiver *receiver, pn_imag
  * size at least, R8, R16F, R32F or any colour-renderable format whose red channel will do. Written at the origin. */
 PN_API pn_result pn_visibility_into(pn_light *light, pn_receiver *receiver, pn_gl texture, int layer);
 
-/* Makes searching techniques tell what they did, as the debug image "search": red = class (0 no map was asked, 1 lit,
- * 2 umbra, 3 penumbra), green = blocks visited, blue = primitives covered, alpha = texels in the search windows. Off
- * at first; costs a second colour target. */
-PN_API pn_result pn_debug(pn_context *context, int enabled);
+/* The soft shadow map of the pair's last pn_visibility with the technique `ssm` (Soft Shadow Maps, section 3): how much
+ * of the light is hidden, as a map in (s, t) of the light (docs/space.md), for hosts that project it themselves. It
+ * holds what this receiver's view shows, and 0 elsewhere. A receiver may be a view from the light. */
+typedef struct {
+  pn_image image;       /* GL_TEXTURE_2D_ARRAY of R32F or R16F; sums of overlapping occluders may exceed 1 */
+  int sides, layers;    /* array layer = side * layers + receivers' layer, nearest to the light first */
+  float s0, t0, s1, t1; /* bounds */
+} pn_soft_shadow_map;
+/* out is valid until the pair's next pn_visibility. PN_ERROR_NOT_READY when the last one had another technique, or no
+ * shadow. */
+PN_API pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver, pn_soft_shadow_map *out);
+
+/* Makes techniques tell what they did, as debug images of the view's size. flags: the sum of what is wanted, 0 at first.
+ * PN_DEBUG_SEARCH  "search", of techniques that search: red = class (0 no map was asked, 1 lit, 2 umbra, 3 penumbra),
+ *                  green = blocks visited, blue = primitives covered, alpha = texels in the search windows; costs a
+ *                  second colour target
+ * PN_DEBUG_BOUND   "bound", of technique `ssm`: how far visibility may be off because neighbouring micropatches overlap
+ *                  or part (Soft Shadow Maps, Eq. 3); costs a drawing of every micropatch, unmerged */
+enum { PN_DEBUG_SEARCH = 1, PN_DEBUG_BOUND = 2 };
+PN_API pn_result pn_debug(pn_context *context, int flags);
 
 /* Intermediate images, for looking at: index from 0 until it returns 0. receiver may be NULL: the light's maps only. */
 PN_API int pn_debug_image(pn_light *light, pn_receiver *receiver, int index, const char **name, pn_image *out);

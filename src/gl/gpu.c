@@ -112,6 +112,7 @@ static void read_capabilities(pn_gpu *gpu) {
   can->blend_buffers = function && can->version >= 40;
   function = !gpu->desc.get_proc_address || gpu->storage.DrawArraysIndirect;
   can->indirect = function && (can->version >= 40 || has_extension(gpu, "GL_ARB_draw_indirect"));
+  can->float_blend = true;
   can->fixed_restart = can->version >= 43;
   GL(gpu, GetIntegerv)(GL_MAX_TEXTURE_SIZE, &can->texture_size_max);
   GL(gpu, GetIntegerv)(GL_MAX_ARRAY_TEXTURE_LAYERS, &can->layers_max);

@@ -46,7 +46,7 @@ typedef struct pn_gpu {
 
   size_t memory; /* bytes in textures and buffers */
   bool timing;
-  bool debug; /* searches tell what they did */
+  int debug; /* PN_DEBUG_...: what techniques tell of what they did */
 
   pn_gl vertex_array; /* without attributes: full-screen triangles */
   pn_gl framebuffer;  /* the one the passes draw to */

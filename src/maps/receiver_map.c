@@ -1,5 +1,6 @@
 #include "maps/receiver_map.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -38,6 +39,36 @@ static void copy_layer(pn_gpu *gpu, const pn_receiver_map *map, int layer) {
   GL(gpu, CopyTexSubImage3D)(map->layers.target, 0, 0, 0, layer, 0, 0, map->aside.width, map->aside.height);
 }
 
+/* The pixels that can show what lies in the map's bounds: x, y, width, height. All of the view where the bounds reach
+ * behind the camera, or behind the light. */
+static void find_pixels(const pn_receiver *receiver, const pn_frame *frame, const pn_receiver_map_want *w, int out[4]) {
+  const pn_receiver_desc *view = &receiver->desc;
+  pn_matrix light_from_scene = pn_light_from_scene(frame), scene_from_light, pixel_from_scene;
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, size[2] = {view->width, view->height};
+  bool sound = pn_matrix_invert(&light_from_scene, &scene_from_light) &&
+               pn_matrix_invert(&receiver->scene_from_pixel, &pixel_from_scene) && (frame->sun || w->w_least > 0);
+  int before = 0;
+  for (int i = 0; i < 8 && sound; i++) {
+    double m[3] = {w->bounds[i & 1 ? 2 : 0], w->bounds[i & 2 ? 3 : 1], i & 4 ? w->w_most : w->w_least}, q[3],
+           p[4] = {0, 0, 0, 1}, h[4];
+    pn_light_point(m, frame->sun, q);
+    pn_matrix_point(&scene_from_light, q, p);
+    pn_matrix_apply(&pixel_from_scene, p, h);
+    before += h[3] > 0;
+    for (int c = 0; c < 2; c++) {
+      low[c] = fmin(low[c], h[c] / h[3]);
+      high[c] = fmax(high[c], h[c] / h[3]);
+    }
+  }
+  sound = sound && before % 8 == 0 && isfinite(low[0] + low[1] + high[0] + high[1]);
+  for (int c = 0; c < 2; c++) {
+    double from = sound ? fmin(fmax(floor(low[c]) - 1, 0), size[c]) : 0;
+    double to = sound ? fmin(fmax(ceil(high[c]) + 1, 0), size[c]) : size[c];
+    out[c] = (int)from;
+    out[c + 2] = (int)fmax(to - from, 0);
+  }
+}
+
 static pn_result draw_layer(pn_receiver *receiver, const pn_frame *frame, pn_receiver_map *map, int layer) {
   pn_gpu *gpu = &receiver->object.context->gpu;
   const pn_receiver_map_want *w = &map->want;
@@ -63,8 +94,11 @@ static pn_result draw_layer(pn_receiver *receiver, const pn_frame *frame, pn_rec
   float depth[4] = {(float)w->w_least, (float)w->w_most, (float)w->width, (float)w->height};
   GL(gpu, Uniform4iv)(pn_uniform(program, "pn_layer"), 1, before);
   GL(gpu, Uniform4fv)(pn_uniform(program, "pn_seen_depth"), 1, depth);
+  GLint pixels[4];
+  find_pixels(receiver, frame, w, pixels);
+  GL(gpu, Uniform4iv)(pn_uniform(program, "pn_pixels"), 1, pixels);
   GL(gpu, BindVertexArray)(gpu->vertex_array);
-  GL(gpu, DrawArrays)(GL_POINTS, 0, receiver->desc.width * receiver->desc.height);
+  if (pixels[2] > 0 && pixels[3] > 0) GL(gpu, DrawArrays)(GL_POINTS, 0, pixels[2] * pixels[3]);
   copy_layer(gpu, map, layer);
   return PN_OK;
 }

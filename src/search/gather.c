@@ -19,7 +19,7 @@ static pn_result draw(const pn_gathering *g, pn_attachment target, int width, in
   char defines[PN_RECEIVER_DEFINES];
   const pn_program *program;
   pn_receiver_defines(g->receiver, defines);
-  bool debug = g->gpu->debug && g->searches && !upsample;
+  bool debug = (g->gpu->debug & PN_DEBUG_SEARCH) && g->searches && !upsample;
   gather_variant variant = {g->shader, g->defines, defines, upsample, debug};
   pn_result result = gather_program(g->gpu, &variant, &program);
   if (result == PN_OK && debug) result = pn_texture_shape(g->gpu, &g->pair->search, GL_RGBA32F, width, height, 0, 1);

@@ -126,6 +126,8 @@ static int failures_of(const char *spec) {
   int failures = 0, lit = 0, edge = 0;
   for (int i = 0; i < round_count(); i++) {
     configuration c = pick(spec, &seed);
+    /* Scattering costs texels times texels: what a light of ten times the solid's size covers of 2048^2 takes hours. */
+    if (!strcmp(spec, "ssm") && c.map > 64) c.map = 64;
     count found = look(&c, &seed);
     lit += found.lit;
     edge += found.edge;

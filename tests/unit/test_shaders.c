@@ -97,6 +97,22 @@ static void add_others(void) {
     add_key(screen, "techniques/average/average.frag.glsl", "", defines);
   }
   add_key(screen, "techniques/average/resolve.frag.glsl", "", "");
+  add_key(screen, "maps/receiver_range.frag.glsl", "", "");
+  for (int i = 0; i < 20; i++) {
+    snprintf(defines, sizeof defines, "PN_NORMALS %d\nPN_MASK %d\nPN_PEEL %d\n", i % 5, i / 5 & 1, i / 10);
+    add_key("maps/receiver_map.vert.glsl", "maps/receiver_map.frag.glsl", "", defines);
+    snprintf(defines, sizeof defines, "PN_NORMALS %d\nPN_MASK %d\nPN_BOUND %d\n", i % 5, i / 5 & 1, i / 10);
+    add_key(screen, "techniques/ssm/lookup.frag.glsl", "", defines);
+  }
+  for (int i = 0; i < 2; i++) {
+    snprintf(defines, sizeof defines, "PN_FIRST %d\n", i);
+    add_key(screen, "techniques/ssm/nodes.frag.glsl", "", defines);
+    snprintf(defines, sizeof defines, "PN_BOUND %d\n", i);
+    add_key("techniques/ssm/patch.vert.glsl", "techniques/ssm/patch.frag.glsl", "", defines);
+  }
+  add_key(screen, "techniques/ssm/list.frag.glsl", "", "");
+  add_key(screen, "techniques/ssm/arguments.frag.glsl", "", "");
+  add_key(screen, "techniques/ssm/add.frag.glsl", "", "");
   add_key("", "casters/peel.glsl", "", "");
   add_key(screen, "casters/points.frag.glsl", "", "");
   add_key(screen, "casters/silhouette.frag.glsl", "", "");

@@ -1,6 +1,11 @@
-// A batch of micropatches onto the sum of those before (Soft Shadow Maps, appendix A, and the report it cites).
+// A batch of micropatches, and the sum of those before it (Soft Shadow Maps, appendix A). The sum is in 32 bits,
+// which can be drawn to where they cannot be blended.
 #include "shaders/precision.glsl"
-uniform highp sampler2D pn_work;
+uniform highp sampler2D pn_work;  // the sum
+uniform highp sampler2D pn_alpha; // the batch
 layout(location = 0) out vec4 pn_out;
 
-void main() { pn_out = texelFetch(pn_work, ivec2(gl_FragCoord.xy), 0); }
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  pn_out = texelFetch(pn_work, at, 0) + texelFetch(pn_alpha, at, 0);
+}

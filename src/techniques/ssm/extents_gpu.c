@@ -37,7 +37,7 @@ pn_result ssm_gpu_shape(const pn_visibility_request *r) {
   int size = ssm_list_size(r->maps), width = (int)least((size_t)size, SSM_LIST_WIDTH);
   int height = (size + width - 1) / width;
   pn_result result =
-      pn_texture_shape(r->gpu, &work[SSM_COUNTS], GL_RG32UI, range->width, range->height, 0, range->levels);
+      pn_texture_shape(r->gpu, &work[SSM_COUNTS], GL_RGBA32UI, range->width, range->height, 0, range->levels);
   for (int i = SSM_LIST; i <= SSM_LIMITS && result == PN_OK; i++)
     result = pn_texture_shape(r->gpu, &work[i], GL_RGBA32F, width, height, 0, 1);
   return result == PN_OK ? pn_texture_shape(r->gpu, &work[SSM_ARGUMENTS], GL_RGBA32UI, 1, 1, 0, 1) : result;

@@ -7,31 +7,46 @@ uniform ivec4 pn_place;           // first entry of this list, its width
 layout(location = 0) out vec4 pn_out;
 layout(location = 1) out vec4 pn_limits;
 
+// The child that entry k of a node's children lies in; k becomes its place there.
+ivec2 pn_child(ivec2 at, int level, inout uint k) {
+  // From the first level: software GL answers a size for one level to all pixels of a group.
+  ivec2 last = max(textureSize(pn_work, 0) >> level, 1) - 1, child = 2 * at;
+  bool found = false;
+  for (int c = 0; c < 4; c++) {
+    ivec2 candidate = 2 * at + ivec2(c & 1, c >> 1);
+    uint count = texelFetch(pn_work, min(candidate, last), level).r;
+    count = any(greaterThan(candidate, last)) ? 0u : count;
+    bool here = !found && k < count;
+    child = here ? candidate : child;
+    k -= found || here ? 0u : count;
+    found = found || here;
+  }
+  return child;
+}
+
 void main() {
   uint k = uint(pn_place.x) + uint(gl_FragCoord.y) * uint(pn_place.y) + uint(gl_FragCoord.x);
   int level = pn_levels.x - 1;
   ivec2 at = ivec2(0);
   pn_out = vec4(0.0);
   pn_limits = vec4(0.0);
-  if (k >= texelFetch(pn_work, at, level).r) return;
-  for (int i = 0; i < 16 && level > 0; i++) {
+  int found = k < texelFetch(pn_work, at, level).r ? 1 : 0;
+  // Selections instead of jumps: pixels of one loop go down to different levels.
+  bool down = true;
+  for (int i = 1; i < pn_levels.x * found; i++) {
     uint own = texelFetch(pn_work, at, level).g;
-    if (k < own) break;
-    k -= own;
-    level--;
-    ivec2 last = textureSize(pn_work, level) - 1, child = 2 * at;
-    for (int c = 0; c < 4; c++) {
-      ivec2 candidate = 2 * at + ivec2(c & 1, c >> 1);
-      if (any(greaterThan(candidate, last))) continue;
-      uint count = texelFetch(pn_work, candidate, level).r;
-      child = candidate;
-      if (k < count) break;
-      k -= count;
+    down = down && k >= own;
+    if (down) {
+      k -= own;
+      level--;
+      at = pn_child(at, level, k);
     }
-    at = child;
   }
-  pn_Patch p = pn_node(at, level);
-  float scale = float(1 << level);
-  pn_out = vec4(vec2(at) * scale, scale, p.w);
-  pn_limits = vec4(p.most, p.above, p.least, 1.0);
+  // A loop, not a condition: software GL runs through both sides of a condition, but not through a loop of no turns.
+  for (int i = 0; i < found; i++) {
+    pn_Patch p = pn_node(at, level);
+    float scale = float(1 << level);
+    pn_out = vec4(vec2(at) * scale, scale, p.w);
+    pn_limits = vec4(p.most, p.above, uintBitsToFloat(texelFetch(pn_work, at, level).b), 1.0);
+  }
 }

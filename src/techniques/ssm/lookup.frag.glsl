@@ -19,12 +19,14 @@ float pn_hidden_at(ivec2 texel, int layer) {
 }
 
 // Bilinear over the four texels around the receiver, each by how near its surface passes the receiver: one is as good
-// as on it within a texel's thickness.
+// as on it within a texel's thickness, and of no use past four. Only where none is near enough, in front of a surface
+// that no layer holds, do the others speak.
 float pn_hidden(vec3 m, bool sun) {
   vec2 at = pn_seen_texel(m.xy) - 0.5;
   ivec2 base = ivec2(floor(at)), last = textureSize(pn_seen, 0).xy - 1;
   vec2 f = at - vec2(base);
-  float thickness = pn_seen_thickness(m.z, sun), sum = 0.0, weights = 0.0;
+  float thickness = pn_seen_thickness(m.z, sun);
+  vec2 near = vec2(0.0), far = vec2(0.0); // weighted sum, sum of weights
   for (int i = 0; i < 4; i++) {
     ivec2 corner = ivec2(i & 1, i >> 1), texel = base + corner;
     if (any(lessThan(texel, ivec2(0))) || any(greaterThan(texel, last))) continue;
@@ -35,23 +37,28 @@ float pn_hidden(vec3 m, bool sun) {
       if (seen.x < -1e29) break;
       float away = (m.z - seen.x - pn_seen_rise(seen.yz, seen.w, off, 4.0 * thickness)) / thickness;
       float weight = bilinear.x * bilinear.y / (1.0 + away * away * away * away);
-      sum += weight * pn_hidden_at(texel, layer);
-      weights += weight;
+      vec2 term = weight * vec2(pn_hidden_at(texel, layer), 1.0);
+      far += term;
+      if (abs(away) < 4.0) near += term;
     }
   }
-  return weights > 0.0 ? sum / weights : 0.0;
+  return near.y > 0.0 ? near.x / near.y : far.y > 0.0 ? far.x / far.y : 0.0;
 }
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  float visibility = 1.0;
+  float hidden = 0.0;
   if (pn_receives(pixel)) {
     pn_Surface s = pn_surface(pixel);
     pn_Receiver r = pn_receiver(0, s.p, s.error, s.n, s.sigma);
     if (!pn_unlit(0, r)) {
       float above = pn_area_above(pn_extent(0), r.n.xy, r.k);
-      visibility = above > 0.0 ? 1.0 - min(pn_hidden(r.m, pn_is_sun(0)) / above, 1.0) : 1.0;
+      if (above > 0.0) hidden = min(pn_hidden(r.m, pn_is_sun(0)) / above, 1.0);
     }
   }
-  pn_out = vec4(vec3(visibility), 1.0);
+#if PN_BOUND
+  pn_out = vec4(hidden, 0.0, 0.0, 1.0);
+#else
+  pn_out = vec4(vec3(1.0 - hidden), 1.0);
+#endif
 }

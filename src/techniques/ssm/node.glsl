@@ -24,6 +24,7 @@ float pn_node_limit(ivec2 at, int level, vec4 texels) {
 
 vec4 pn_node_texels(ivec2 at, int level) { return vec4(vec2(at), vec2(at) + 1.0) * float(1 << level); }
 
+// The node as a patch, but for the receivers around it.
 pn_Patch pn_node(ivec2 at, int level) {
   pn_Patch p;
   vec4 texels = pn_node_texels(at, level);
@@ -33,17 +34,20 @@ pn_Patch pn_node(ivec2 at, int level) {
   p.above = pn_node_limit(at >> 1, level + 1, pn_node_texels(at >> 1, level + 1));
   p.rectangle = vec4(pn_map_st(0, pn_source.w, texels.xy), pn_map_st(0, pn_source.w, texels.zw));
   p.drawn = p.most > -1e29;
-  if (!p.drawn) return p;
-  // First out to the farthest receiver there is, then to the farthest one found on the way.
+  p.least = 0.0;
+  return p;
+}
+
+// Which receivers it reaches: first out to the farthest there is, then to the farthest one found on the way.
+void pn_node_reach(inout pn_Patch p) {
   ivec2 size = pn_levels.zw;
   float farthest = texelFetch(pn_seen_range, ivec3(0, 0, pn_source.z), pn_levels.y - 1).g;
   vec2 seen = vec2(p.most, max(farthest, p.above));
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < 2 && p.drawn; i++) {
     vec2 reach = pn_penumbra_extent(pn_extent(0), p.w, seen.y);
     seen = pn_seen_between(pn_seen_range, pn_source.z, p.rectangle.xy - reach, p.rectangle.zw + reach, size, pn_levels.y);
-    p.drawn = p.drawn && seen.y <= p.most && seen.x > p.above;
+    p.drawn = seen.y <= p.most && seen.x > p.above;
     seen.y = max(seen.y, p.above);
   }
   p.least = seen.y;
-  return p;
 }

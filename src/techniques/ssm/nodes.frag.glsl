@@ -11,7 +11,9 @@ layout(location = 0) out uvec4 pn_out;
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-  uint count = pn_node(at, pn_source.y).drawn ? 1u : 0u;
+  pn_Patch p = pn_node(at, pn_source.y);
+  pn_node_reach(p);
+  uint count = p.drawn ? 1u : 0u;
   uint own = count;
 #if !PN_FIRST
   ivec2 last = textureSize(pn_work, 0) - 1;
@@ -20,5 +22,5 @@ void main() {
     if (all(lessThanEqual(child, last))) count += texelFetch(pn_work, child, 0).r;
   }
 #endif
-  pn_out = uvec4(count, own, 0u, 0u);
+  pn_out = uvec4(count, own, floatBitsToUint(p.least), 0u);
 }

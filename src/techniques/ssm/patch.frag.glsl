@@ -4,10 +4,29 @@
 #include "techniques/ssm/patches.glsl"
 
 uniform highp sampler2DArray pn_seen; // the receiver map
-uniform ivec4 pn_layer;
+uniform ivec4 pn_layer; // of the receiver map; of the occluder maps' array, last texel of the map
 flat in vec4 pn_rectangle;
 flat in vec3 pn_served;
 layout(location = 0) out vec4 pn_out;
+
+#if PN_BOUND
+flat in vec2 pn_neighbours;
+
+// Soft Shadow Maps, Eq. 3: how far a micropatch and its neighbour beyond the edge at position at overlap, or part, at
+// most, where that edge falls onto the light; as a share of the light, over the edge's length.
+float pn_overlap(float w, float neighbour, float w_r, float at, float extent, float edge) {
+  float lower = min(w, neighbour) - w_r;
+  if (neighbour < -1e29 || lower <= 0.0) return 0.0;
+  float nearest = abs(at) / (max(w, neighbour) - w_r); // the farther one projects farther out
+  return nearest <= extent ? min(0.5 * abs(w - neighbour) / lower, 1.0) * edge : 0.0;
+}
+
+float pn_error_bound(vec2 st, float w_r, vec2 covered) {
+  vec2 at = pn_rectangle.zw - st;
+  return pn_overlap(pn_served.x, pn_neighbours.x, w_r, at.x, pn_extent(0).x, covered.y) +
+         pn_overlap(pn_served.x, pn_neighbours.y, w_r, at.y, pn_extent(0).y, covered.x);
+}
+#endif
 
 void main() {
   vec4 seen = texelFetch(pn_seen, ivec3(ivec2(gl_FragCoord.xy), pn_layer.x), 0);
@@ -20,5 +39,10 @@ void main() {
   vec2 scale = 0.5 / (pn_extent(0) * max(nearer, 1e-30));
   vec2 low = clamp((pn_rectangle.xy - st) * scale, -0.5, 0.5), high = clamp((pn_rectangle.zw - st) * scale, -0.5, 0.5);
   vec2 covered = high - low;
+#if PN_BOUND
+  bool below = seen.x > -1e29 && seen.x < w;
+  pn_out = vec4(below ? pn_error_bound(st, seen.x, covered) : 0.0, 0.0, 0.0, 1.0);
+#else
   pn_out = vec4(blocks ? covered.x * covered.y : 0.0, 0.0, 0.0, 1.0);
+#endif
 }

@@ -4,23 +4,33 @@
 
 uniform highp sampler2D pn_work; // the list
 uniform highp sampler2D pn_alpha; // its limits
+#if PN_BOUND
+uniform highp sampler2DArray pn_range; // of the occluder maps
+uniform ivec4 pn_layer;
+flat out vec2 pn_neighbours;       // w of the right and the upper texel
+#endif
+uniform ivec4 pn_order;          // first entry, step to the next
 uniform ivec4 pn_place;          // list's width, map, width and height of the soft shadow map
 flat out vec4 pn_rectangle;      // s0, t0, s1, t1
 flat out vec3 pn_served;         // w, serves receivers up to, above
 
 void main() {
-  int k = gl_VertexID / 6, corner = gl_VertexID % 6;
+  int k = pn_order.x + pn_order.y * (gl_VertexID / 6), corner = gl_VertexID % 6;
   ivec2 entry = ivec2(k % pn_place.x, k / pn_place.x);
   vec4 patch_texels = texelFetch(pn_work, entry, 0), limits = texelFetch(pn_alpha, entry, 0);
   vec2 low = pn_map_st(0, pn_place.y, patch_texels.xy), high = pn_map_st(0, pn_place.y, patch_texels.xy + patch_texels.z);
   float w = patch_texels.w;
   pn_rectangle = vec4(low, high);
   pn_served = vec3(w, limits.xy);
+#if PN_BOUND
+  ivec2 texel = ivec2(patch_texels.xy), last = textureSize(pn_range, 0).xy - 1;
+  pn_neighbours = vec2(texelFetch(pn_range, ivec3(min(texel + ivec2(1, 0), last), pn_layer.y), 0).r,
+                       texelFetch(pn_range, ivec3(min(texel + ivec2(0, 1), last), pn_layer.y), 0).r);
+  w = max(w, max(pn_neighbours.x, pn_neighbours.y));
+#endif
   // Soft Shadow Maps, section 3.3: up to where the farthest receiver in reach sees the patch before the light's edge.
   vec2 reach = pn_penumbra_extent(pn_extent(0), w, limits.z);
-  // corners 0 1 2, 2 1 3
-  bvec2 upper = bvec2(corner == 1 || corner > 3 ? true : false, corner == 2 || corner == 3 || corner == 5);
-  upper.x = corner == 1 || corner == 4 || corner == 5;
+  bvec2 upper = bvec2(corner == 1 || corner > 3, corner == 2 || corner == 3 || corner == 5);
   vec2 at = pn_seen_texel(vec2(upper.x ? high.x + reach.x : low.x - reach.x, upper.y ? high.y + reach.y : low.y - reach.y));
   // A hundredth of a texel more: centres on the border belong to it, whatever way its numbers were rounded.
   at += vec2(upper.x ? 0.01 : -0.01, upper.y ? 0.01 : -0.01);

@@ -32,14 +32,21 @@ static const pn_parameter parameters[COUNT] = {
     [SIZE] = {"size", "texels", "soft shadow map of N x N; 0 = as the occluder map", "Soft Shadow Maps, section 5.2.3",
               PN_INT, 0, PN_MAP_SIZE_MAX, 0, NULL},
     [LAYERS] = {"layers", "", "receivers told apart behind one another, as the light sees them",
-                "Soft Shadow Maps, section 7", PN_INT, 1, RECEIVER_LAYERS_MAX, 2, NULL},
+                "Soft Shadow Maps, section 7", PN_INT, 1, RECEIVER_LAYERS_MAX, 4, NULL},
 };
 
 static void preset(int choice, double *values) {
   for (int i = 0; i < COUNT; i++) values[i] = parameters[i].initial;
   values[PRESET] = choice;
-  if (choice == 0) values[MERGE] = 2;    /* fast */
-  if (choice == 2) values[MERGE] = 0.25; /* exact */
+  if (choice == 0) { /* fast */
+    values[MERGE] = 3;
+    values[SIZE] = 256;
+    values[LAYERS] = 3;
+  }
+  if (choice == 2) { /* exact */
+    values[MERGE] = 0.25;
+    values[LAYERS] = 6;
+  }
 }
 
 static bool has_front(const double *values) { return values[SIDES] != SIDES_BACK; }
@@ -114,9 +121,10 @@ static bool place(const pn_visibility_request *r, const pn_region *seen, pn_rece
                                 .layers = (int)r->values[LAYERS]};
   for (int i = 0; i < 2; i++)
     if (!place_axis(r, seen, i, &out->bounds[i], &out->bounds[i + 2])) return false;
-  double span = fmax(seen->most[2] - seen->least[2], 1e-6 * fabs(seen->most[2]) + 1e-12);
-  out->w_least = seen->least[2] - 0.01 * span;
-  out->w_most = seen->most[2] + 0.01 * span;
+  /* Receivers in a plane that faces the light have no extent in w; the depth test needs one that floats resolve. */
+  double span = fmax(seen->most[2] - seen->least[2], 1e-3 * fabs(seen->most[2]) + 1e-12);
+  out->w_least = seen->least[2] - 0.1 * span;
+  out->w_most = seen->most[2] + 0.1 * span;
   return true;
 }
 
@@ -127,8 +135,11 @@ typedef struct {
   int accumulate;
   bool bound; /* the error's bound instead of the shadow */
   const pn_texture *soft;
+  int sum;              /* by batches: which of two images holds it */
   pn_attachment target; /* the layer of it that is summed up */
 } scattering;
+
+static bool by_batches(const scattering *s) { return s->accumulate == ACCUMULATE_BATCHED && !s->bound; }
 
 static pn_result begin_target(const scattering *s, pn_attachment target, pn_blend blend, bool clear) {
   pn_pass pass = {.color = {target}, .width = s->soft->width, .height = s->soft->height, .blend = blend};
@@ -139,7 +150,8 @@ static pn_result begin_target(const scattering *s, pn_attachment target, pn_blen
 }
 
 /* Everything set for drawing entries of the list that lies in the work textures. */
-static pn_result begin_patches(const scattering *s, const ssm_list *list, pn_attachment target, bool clear) {
+static pn_result begin_patches(const scattering *s, const ssm_list *list, pn_attachment target, bool clear, int first,
+                               int step) {
   pn_gpu *gpu = s->r->gpu;
   const pn_texture *work = s->r->pair->work;
   const pn_program *program;
@@ -147,8 +159,10 @@ static pn_result begin_patches(const scattering *s, const ssm_list *list, pn_att
   if (result == PN_OK) result = begin_target(s, target, PN_BLEND_ADD, clear);
   if (result != PN_OK) return result;
   GL(gpu, UseProgram)(program->id);
+  GLint order[4] = {first, step, 0, 0};
   GLint place[4] = {work[SSM_LIST].width, list->map, s->soft->width, s->soft->height};
   GLint layer[4] = {list->seen_layer, list->map * s->r->maps->layers + list->layer, 0, 0};
+  GL(gpu, Uniform4iv)(pn_uniform(program, "pn_order"), 1, order);
   GL(gpu, Uniform4iv)(pn_uniform(program, "pn_place"), 1, place);
   GL(gpu, Uniform4iv)(pn_uniform(program, "pn_layer"), 1, layer);
   pn_receiver_map_bind(gpu, &s->r->pair->seen, program);
@@ -158,51 +172,59 @@ static pn_result begin_patches(const scattering *s, const ssm_list *list, pn_att
   return PN_OK;
 }
 
-static pn_result draw_entries(const scattering *s, const ssm_list *list, pn_attachment target, bool clear, int first,
-                              int count) {
-  pn_result result = begin_patches(s, list, target, clear);
+/* Entries first, first + step, ... of the list. */
+typedef struct {
+  int first, step, count;
+} entry_range;
+
+static pn_result draw_entries(const scattering *s, const ssm_list *list, pn_attachment target, bool clear,
+                              entry_range range) {
+  pn_result result = begin_patches(s, list, target, clear, range.first, range.step);
   if (result != PN_OK) return result;
   GL(s->r->gpu, BindVertexArray)(s->r->gpu->vertex_array);
-  GL(s->r->gpu, DrawArrays)(GL_TRIANGLES, 6 * first, 6 * count);
+  GL(s->r->gpu, DrawArrays)(GL_TRIANGLES, 0, 6 * range.count);
   return PN_OK;
 }
 
-/* The batch onto the sum. */
-static pn_result add_batch(const scattering *s) {
+/* The batch and the sum so far, into the other of two images: nothing is blended. */
+static pn_result add_batch(scattering *s) {
   pn_gpu *gpu = s->r->gpu;
-  const pn_texture *batch = &s->r->pair->work[SSM_BATCH];
+  const pn_texture *work = s->r->pair->work, *batch = &work[SSM_BATCH];
+  const pn_texture *from = &work[SSM_SUM + s->sum], *to = &work[SSM_SUM + !s->sum];
   const pn_program *program;
   pn_result result = add_program(gpu, &program);
-  if (result == PN_OK) result = begin_target(s, s->target, PN_BLEND_ADD, false);
+  if (result == PN_OK) result = begin_target(s, (pn_attachment){to->id, to->target, 0, 0}, PN_BLEND_NONE, false);
   if (result != PN_OK) return result;
   GL(gpu, UseProgram)(program->id);
-  pn_bind_texture(gpu, PN_UNIT_WORK, batch->target, batch->id, false);
+  pn_bind_texture(gpu, PN_UNIT_WORK, from->target, from->id, false);
+  pn_bind_texture(gpu, PN_UNIT_ALPHA, batch->target, batch->id, false);
   pn_draw_screen(gpu);
+  s->sum = !s->sum;
   return PN_OK;
 }
 
-/* Appendix A's way round 16 bits: about sqrt(M) micropatches are summed up aside before they meet the large sum, so that both
- * sums have few, comparable terms. */
-static pn_result draw_batches(const scattering *s, const ssm_list *list, int total, int count) {
+/* Appendix A's way round 16 bits: about sqrt(M) micropatches are summed up aside before they meet the rest. Neighbours
+ * in the list cover the same texels, so a batch takes every sqrt(M)-th: what meets in a texel of it is few. */
+static pn_result draw_batches(scattering *s, const ssm_list *list, int total, int count) {
   const pn_texture *batch = &s->r->pair->work[SSM_BATCH];
-  int size = (int)ceil(sqrt(total));
+  pn_attachment aside = {batch->id, batch->target, 0, 0};
+  int step = (int)ceil(sqrt(total));
   pn_result result = PN_OK;
-  for (int first = 0; first < count && result == PN_OK; first += size) {
-    int part = count - first < size ? count - first : size;
-    result = draw_entries(s, list, (pn_attachment){batch->id, batch->target, 0, 0}, true, first, part);
+  for (int first = 0; first < step && first < count && result == PN_OK; first++) {
+    entry_range range = {first, step, (count - first + step - 1) / step};
+    result = draw_entries(s, list, aside, true, range);
     if (result == PN_OK) result = add_batch(s);
   }
   return result;
 }
 
 /* What lies in the list's textures: total micropatches in all lists, or -1 where only the GPU knows. */
-static pn_result draw_list(const scattering *s, const ssm_list *list, int total) {
+static pn_result draw_list(scattering *s, const ssm_list *list, int total) {
   const pn_visibility_request *r = s->r;
   int size = ssm_list_size(r->maps), left = total - list->first;
-  if (total >= 0 && s->accumulate == ACCUMULATE_BATCHED && !s->bound)
-    return draw_batches(s, list, total, left < size ? left : size);
-  if (total >= 0) return draw_entries(s, list, s->target, false, 0, left < size ? left : size);
-  pn_result result = begin_patches(s, list, s->target, false);
+  if (total >= 0 && by_batches(s)) return draw_batches(s, list, total, left < size ? left : size);
+  if (total >= 0) return draw_entries(s, list, s->target, false, (entry_range){0, 1, left < size ? left : size});
+  pn_result result = begin_patches(s, list, s->target, false, 0, 1);
   return result == PN_OK ? pn_draw_counted(r->gpu, &r->pair->work[SSM_ARGUMENTS], &r->pair->arguments, 6 * size)
                          : result;
 }
@@ -211,11 +233,10 @@ static void mark(const scattering *s, const char *stage) {
   pn_clock_mark(s->r->gpu, &s->r->pair->clock, s->bound ? "bound" : stage);
 }
 
-static pn_result scatter_gpu(const scattering *s, ssm_list *list) {
+static pn_result scatter_gpu(scattering *s, ssm_list *list) {
   int total = -1, most = ssm_list_most(s->r->maps);
   pn_result result = ssm_gpu_count(list);
-  bool batched = s->accumulate == ACCUMULATE_BATCHED;
-  if (result == PN_OK && batched) result = ssm_gpu_total(list, &total);
+  if (result == PN_OK && by_batches(s)) result = ssm_gpu_total(list, &total);
   if (total >= 0) most = total;
   for (; list->first < most && result == PN_OK; list->first += ssm_list_size(s->r->maps)) {
     result = ssm_gpu_list(list);
@@ -226,7 +247,7 @@ static pn_result scatter_gpu(const scattering *s, ssm_list *list) {
   return result;
 }
 
-static pn_result scatter_cpu(const scattering *s, ssm_list *list) {
+static pn_result scatter_cpu(scattering *s, ssm_list *list) {
   float *entries;
   int total;
   pn_result result = ssm_cpu_list(list, &entries, &total);
@@ -240,11 +261,27 @@ static pn_result scatter_cpu(const scattering *s, ssm_list *list) {
   return result;
 }
 
+static pn_result begin_sum(scattering *s) {
+  const pn_texture *sum = &s->r->pair->work[SSM_SUM];
+  s->sum = 0;
+  pn_attachment target = by_batches(s) ? (pn_attachment){sum->id, sum->target, 0, 0} : s->target;
+  return begin_target(s, target, PN_BLEND_NONE, true);
+}
+
+static void end_sum(const scattering *s) {
+  pn_gpu *gpu = s->r->gpu;
+  if (!by_batches(s)) return;
+  pn_read_from(gpu, &s->r->pair->work[SSM_SUM + s->sum], 0, 0);
+  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
+  GL(gpu, BindTexture)(s->soft->target, s->soft->id);
+  GL(gpu, CopyTexSubImage3D)(s->soft->target, 0, 0, 0, s->target.layer, 0, 0, s->soft->width, s->soft->height);
+}
+
 /* One side's shadow on one layer of receivers. */
 static pn_result scatter(scattering *s, int side, int seen_layer) {
   const pn_maps *maps = s->r->maps;
   s->target = (pn_attachment){s->soft->id, s->soft->target, 0, side * s->r->pair->seen.want.layers + seen_layer};
-  pn_result result = begin_target(s, s->target, PN_BLEND_NONE, true);
+  pn_result result = begin_sum(s);
   for (int map = 0; map < maps->fit.tiles && result == PN_OK; map++) {
     ssm_list list = {.request = s->r,
                      .map = map,
@@ -253,6 +290,7 @@ static pn_result scatter(scattering *s, int side, int seen_layer) {
                      .share = s->bound ? 0 : s->r->values[MERGE] / 100};
     result = s->r->values[EXTENTS] == EXTENTS_CPU ? scatter_cpu(s, &list) : scatter_gpu(s, &list);
   }
+  if (result == PN_OK) end_sum(s);
   return result;
 }
 
@@ -312,15 +350,43 @@ static int accumulation(const pn_visibility_request *r) {
   return ACCUMULATE_BATCHED;
 }
 
+/* ---- what it leaves for the host --------------------------------------------------------------------------------- */
+
+static void hand_out(const scattering *s) {
+  pn_pair *pair = s->r->pair;
+  const pn_receiver_map_want *w = &pair->seen.want;
+  pair->soft = (pn_soft_shadow_map){.sides = s->r->maps->layers,
+                                    .layers = w->layers,
+                                    .s0 = (float)w->bounds[0],
+                                    .t0 = (float)w->bounds[1],
+                                    .s1 = (float)w->bounds[2],
+                                    .t1 = (float)w->bounds[3]};
+  pn_texture_image(s->soft, &pair->soft.image);
+}
+
+/* Eq. 3 instead of the shadow: how far the sums may be off because neighbouring micropatches overlap or part. */
+static pn_result draw_bound(const pn_visibility_request *r) {
+  pn_texture *soft = &r->pair->work[SSM_BOUND], *image = &r->pair->bound;
+  const pn_receiver_map_want *w = &r->pair->seen.want;
+  const pn_receiver_desc *view = &r->receiver->desc;
+  scattering s = {.r = r, .bound = true, .soft = soft};
+  pn_result result = pn_texture_shape(r->gpu, soft, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
+  if (result == PN_OK) result = pn_texture_shape(r->gpu, image, GL_R32F, view->width, view->height, 0, 1);
+  if (result == PN_OK) result = scatter_all(&s);
+  if (result == PN_OK) result = look_up(&s, (pn_attachment){image->id, image->target, 0, 0});
+  mark(&s, "bound");
+  return result;
+}
+
 /* ---- all of it --------------------------------------------------------------------------------------------------- */
 
 static pn_result shape(const pn_visibility_request *r, const pn_receiver_map_want *w, int accumulate) {
   pn_texture *work = r->pair->work;
-  GLenum format = accumulate == ACCUMULATE_FP32 ? GL_R32F : GL_R16F;
+  GLenum format = accumulate == ACCUMULATE_FP16 ? GL_R16F : GL_R32F;
   pn_result result =
       pn_texture_shape(r->gpu, &work[SSM_SOFT], format, w->width, w->height, r->maps->layers * w->layers, 1);
-  if (result == PN_OK && accumulate == ACCUMULATE_BATCHED)
-    result = pn_texture_shape(r->gpu, &work[SSM_BATCH], format, w->width, w->height, 0, 1);
+  for (int i = SSM_BATCH; i < SSM_SOFT && result == PN_OK && accumulate == ACCUMULATE_BATCHED; i++)
+    result = pn_texture_shape(r->gpu, &work[i], i == SSM_BATCH ? GL_R16F : GL_R32F, w->width, w->height, 0, 1);
   return result == PN_OK ? ssm_gpu_shape(r) : result;
 }
 
@@ -345,7 +411,8 @@ static pn_result draw(const pn_visibility_request *r) {
   if (result == PN_OK) result = scatter_all(&s);
   if (result == PN_OK) result = look_up(&s, r->target);
   mark(&s, "visibility");
-  return result;
+  if (result == PN_OK) hand_out(&s);
+  return result == PN_OK && r->gpu->debug & PN_DEBUG_BOUND ? draw_bound(r) : result;
 }
 
 const pn_technique_class pn_technique_ssm = {

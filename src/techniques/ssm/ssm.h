@@ -5,7 +5,7 @@
 #include "techniques/technique.h"
 
 /* The pair's textures that are ours. */
-enum { SSM_COUNTS, SSM_LIST, SSM_LIMITS, SSM_ARGUMENTS, SSM_BATCH, SSM_SOFT, SSM_BOUND_SOFT, SSM_BOUND };
+enum { SSM_COUNTS, SSM_LIST, SSM_LIMITS, SSM_ARGUMENTS, SSM_BATCH, SSM_SUM, SSM_SOFT = SSM_SUM + 2, SSM_BOUND };
 _Static_assert((int)SSM_BOUND < (int)PN_WORK_MAX, "the pair has a place for every texture");
 
 /* Entries of a list: more micropatches are drawn by several lists, one after the other. */

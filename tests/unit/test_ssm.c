@@ -1,0 +1,342 @@
+/* Soft shadow maps: lists of micropatches from GPU and CPU, a plate's closed form, sums in 16 bits, the error's bound, and
+ * scenes that ask for trouble. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "light.h"
+#include "stage.h"
+#include "techniques/ssm/ssm.h"
+
+/* The light looks down from (0, L, 0); u is x, v is -z. The ground y = 0 only receives, unless a test says so. */
+static const double L = 4;
+static const double half_u = 0.5, half_v = 0.3, plate = 0.6, plate_h = 1.5;
+
+enum { SIZE = 48 };
+
+typedef struct {
+  stage s;
+  view v;
+  soup ground, casters;
+} scene;
+
+static void scene_open(scene *c, double half_height) {
+  camera k = {.width = SIZE, .height = SIZE, .eye = v3(0.013, 10, 0.007), .target = v3(0.013, 0, 0.007), .up = v3(0, 0, -1),
+              .orthographic = true, .half_height = half_height, .near = 1, .far = 20};
+  soup_patch(&c->ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
+  view_draw(&c->v, &k, &c->ground);
+  stage_open(&c->s);
+  if (c->casters.count) stage_cast(&c->s, &c->casters);
+  stage_receive(&c->s, &c->v, true);
+}
+
+static void scene_close(scene *c) {
+  stage_close(&c->s);
+  view_free(&c->v);
+  soup_free(&c->ground);
+  soup_free(&c->casters);
+}
+
+static pn_light_desc light_above(int map) { return light_at(v3(0, L, 0), v3(0, -1, 0), half_u, half_v, map); }
+
+static void add_plate(scene *c) { soup_patch(&c->casters, v3(0, plate_h, 0), v3(plate, 0, 0), v3(0, 0, plate)); }
+
+/* Boxes at several heights, and a tilted plate: blocks that merge and blocks that do not. */
+static void add_clutter(scene *c) {
+  add_plate(c);
+  soup_box(&c->casters, v3(-1.2, 0.3, -1), v3(-0.8, 1.1, -0.2));
+  soup_quad(&c->casters, v3(0.7, 0.4, -0.8), v3(0.5, 0.5, 0), v3(0, 0.2, 1.1));
+}
+
+/* ---- lists ------------------------------------------------------------------------------------------------------- */
+
+/* The list that the last draw left, of its last side and layer: 8 floats an entry. */
+static float *read_list(pn_pair *pair, int count) {
+  float *out = malloc((size_t)(count ? count : 1) * 8 * sizeof *out);
+  for (int half = 0; half < 2; half++) {
+    const pn_texture *t = &pair->work[SSM_LIST + half];
+    float *texels = gl_read_texture(t->id, 0, -1, t->width, t->height, 4);
+    for (int i = 0; i < count; i++) memcpy(out + 8 * i + 4 * half, texels + 4 * i, 4 * sizeof *out);
+    free(texels);
+  }
+  return out;
+}
+
+static int gpu_total(scene *c, pn_pair *pair) {
+  const pn_texture *t = &pair->work[SSM_COUNTS];
+  GLuint top[4] = {0};
+  (void)c;
+  glBindTexture(GL_TEXTURE_2D, t->id);
+  glGetTexImage(GL_TEXTURE_2D, t->levels - 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT, top);
+  return (int)top[0];
+}
+
+/* The same patches in the same order. What they serve follows from float arithmetic that two compilers may order
+ * differently, and the farthest receiver in reach from one comparison with a texel's border: both to a part in 10^5. */
+static void check_lists(const char *spec, int map) {
+  scene c = {0};
+  add_clutter(&c);
+  scene_open(&c, 2.2);
+  pn_light_desc light = light_above(map);
+  free(stage_visibility(&c.s, &light, spec));
+  pn_pair *pair = pn_pair_find(&c.s.light->object, &c.s.receiver->object);
+  assert_non_null(pair);
+  int count = gpu_total(&c, pair), cpu_count;
+  float *gpu = read_list(pair, count), *cpu;
+  pn_visibility_request request = {.gpu = &c.s.context->gpu, .maps = &c.s.light->maps, .pair = pair};
+  ssm_list list = {.request = &request, .layer = c.s.light->maps.layers - 1, .share = c.s.light->values[4] / 100};
+  assert_ok(ssm_cpu_list(&list, &cpu, &cpu_count));
+  print_message("%s, %d: %d and %d patches\n", spec, map, count, cpu_count);
+  assert_true(count > 0);
+  int different = 0;
+  for (int i = 0; i < count && i < cpu_count; i++)
+    for (int k = 0; k < 7; k++) different += fabs(gpu[8 * i + k] - cpu[8 * i + k]) > 1e-5 * fabs(cpu[8 * i + k]);
+  assert_int_equal(count, cpu_count);
+  assert_true(different <= count / 1000);
+  free(gpu);
+  pn_free(&c.s.context->gpu, cpu);
+  scene_close(&c);
+}
+
+static void gpu_and_cpu_lists_agree(void **state) {
+  (void)state;
+  check_lists("ssm:merge=0,layers=1,sides=front", 64);
+  check_lists("ssm:merge=0,layers=1", 61);
+  check_lists("ssm:merge=1,layers=1,sides=front", 128);
+  check_lists("ssm:merge=5,layers=1,size=50", 128);
+}
+
+/* ---- a plate parallel to the light ------------------------------------------------------------------------------- */
+
+static double clamp(double x, double low, double high) { return fmin(fmax(x, low), high); }
+
+/* Share of the light's [-half, half] that the plate hides from x on the ground. */
+static double hidden(double x, double half) {
+  double k = plate_h / L, from = (-plate - x * (1 - k)) / k, to = (plate - x * (1 - k)) / k;
+  return (clamp(to, -half, half) - clamp(from, -half, half)) / (2 * half);
+}
+
+static double texel_on_light(const pn_maps_info *info) {
+  return fmax(info->s1 - info->s0, info->t1 - info->t0) / info->width * (L - plate_h) * L / plate_h;
+}
+
+/* The largest difference from the closed form, and what texels allow: each of two edges an axis moves by half an occluder texel and
+ * the raster's snapping; the soft shadow map is looked up bilinearly, which cuts the corners of the ramps by a quarter of its texels. A product
+ * of two shares, each at most 1, is off by at most the sum of what they are off. */
+static double check_plate(const char *spec, bool sum_in_16_bits, double *allowed) {
+  scene c = {0};
+  add_plate(&c);
+  scene_open(&c, 2.2);
+  pn_light_desc light = light_above(128);
+  float *visibility = stage_visibility(&c.s, &light, spec);
+  pn_maps_info info;
+  pn_soft_shadow_map soft;
+  assert_ok(pn_light_maps(c.s.light, &info));
+  assert_ok(pn_soft_shadow_map_image(c.s.light, c.s.receiver, &soft));
+  double moved = 2 * (0.5 + 1.0 / 128) * texel_on_light(&info), worst = 0;
+  double cut = 0.25 * fmax(soft.s1 - soft.s0, soft.t1 - soft.t0) / soft.image.width * (L - plate_h) * L / plate_h * 2;
+  *allowed = (moved + cut) * (1 / (2 * half_u) + 1 / (2 * half_v)) + 1e-4;
+  for (int k = 0; k < SIZE * SIZE; k++) {
+    vec p = view_point(&c.v, k % SIZE, k / SIZE);
+    double want = 1 - hidden(p.x, half_u) * hidden(p.z, half_v);
+    worst = fmax(worst, fabs(visibility[k] - want));
+    assert_true(visibility[k] >= 0 && visibility[k] <= 1);
+  }
+  print_message("%s: off by %.4f, texels allow %.4f\n", spec, worst, *allowed);
+  assert_int_equal(c.s.messages[PN_MESSAGE_ACCUMULATION], sum_in_16_bits);
+  free(visibility);
+  scene_close(&c);
+  return worst;
+}
+
+static void parallel_plate_has_its_closed_form(void **state) {
+  (void)state;
+  static const char *const specs[] = {"ssm",
+                                      "ssm:merge=0",
+                                      "ssm:sides=front",
+                                      "ssm:sides=back,merge=0.25",
+                                      "ssm:extents=cpu",
+                                      "ssm:size=77",
+                                      "ssm:size=300,layers=1",
+                                      "ssm:accumulate=fp16-batched,merge=0"};
+  for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) {
+    double allowed;
+    assert_true(check_plate(specs[i], false, &allowed) <= allowed + (strstr(specs[i], "fp16") ? 0.01 : 0));
+  }
+}
+
+/* Appendix A: what is below 2^-10 of a sum near 1 is lost, and these micropatches hide 1/3000 of the light. */
+static void sums_in_16_bits_lose_small_patches(void **state) {
+  (void)state;
+  double allowed;
+  assert_true(check_plate("ssm:accumulate=fp16,merge=0", true, &allowed) > 0.1);
+}
+
+static void devices_without_float_blending_sum_by_batches(void **state) {
+  (void)state;
+  scene c = {0};
+  add_clutter(&c);
+  scene_open(&c, 2.2);
+  pn_light_desc light = light_above(64);
+  float *direct = stage_visibility(&c.s, &light, "ssm");
+  c.s.context->gpu.can.float_blend = false;
+  float *batched = stage_visibility(&c.s, &light, "ssm"), worst = 0;
+  for (int k = 0; k < SIZE * SIZE; k++) worst = fmaxf(worst, fabsf(direct[k] - batched[k]));
+  assert_int_equal(c.s.messages[PN_MESSAGE_FALLBACK], 1);
+  assert_true(worst > 0 && worst < 0.01);
+  free(direct);
+  free(batched);
+  scene_close(&c);
+}
+
+/* Indirect draws are a shortcut: the same micropatches are drawn without them. */
+static void counted_draws_change_nothing(void **state) {
+  (void)state;
+  scene c = {0};
+  add_clutter(&c);
+  scene_open(&c, 2.2);
+  pn_light_desc light = light_above(64);
+  float *counted = stage_visibility(&c.s, &light, "ssm");
+  c.s.context->gpu.can.indirect = false;
+  float *all = stage_visibility(&c.s, &light, "ssm");
+  assert_memory_equal(counted, all, SIZE * SIZE * sizeof *all);
+  free(counted);
+  free(all);
+  scene_close(&c);
+}
+
+/* ---- the bound --------------------------------------------------------------------------------------------------- */
+
+static float *bound_of(scene *c, const char *spec, float **visibility) {
+  pn_light_desc light = light_above(96);
+  assert_ok(pn_debug(c->s.context, PN_DEBUG_BOUND));
+  *visibility = stage_visibility(&c->s, &light, spec);
+  const char *name;
+  pn_image image;
+  for (int i = 0; pn_debug_image(c->s.light, c->s.receiver, i, &name, &image); i++)
+    if (!strcmp(name, "bound")) return gl_read_texture(image.texture, 0, -1, image.width, image.height, 1);
+  fail_msg("no bound");
+  return NULL;
+}
+
+/* Eq. 3 bounds what neighbours at different depths overlap or leave open: nothing on a plate parallel to the light; on two plates
+ * at different heights, side by side, it holds the error that their edge makes, beside what texels allow. */
+static void bound_holds_overlaps(void **state) {
+  (void)state;
+  scene flat = {0}, step = {0};
+  float *visibility;
+  add_plate(&flat);
+  scene_open(&flat, 2.2);
+  float *bound = bound_of(&flat, "ssm:merge=0", &visibility);
+  for (int k = 0; k < SIZE * SIZE; k++) assert_true(bound[k] == 0);
+  free(bound);
+  free(visibility);
+  scene_close(&flat);
+  soup_patch(&step.casters, v3(-0.5, plate_h, 0), v3(0.5, 0, 0), v3(0, 0, 0.6));
+  soup_patch(&step.casters, v3(0.5, plate_h + 0.5, 0), v3(0.5, 0, 0), v3(0, 0, 0.6));
+  scene_open(&step, 2.2);
+  bound = bound_of(&step, "ssm:merge=0,sides=front", &visibility);
+  float most = 0, over = 0;
+  for (int k = 0; k < SIZE * SIZE; k++) {
+    vec p = view_point(&step.v, k % SIZE, k / SIZE);
+    most = fmaxf(most, bound[k]);
+    if (hypot(p.x, p.z) < 0.25) over = fmaxf(over, (float)(visibility[k] - bound[k])); /* the truth there is umbra */
+  }
+  assert_true(most > 0.05 && most <= 1);
+  assert_true(over < 0.05);
+  free(bound);
+  free(visibility);
+  scene_close(&step);
+}
+
+/* ---- trouble ----------------------------------------------------------------------------------------------------- */
+
+static void check_sound(scene *c, const pn_light_desc *light, const char *spec) {
+  float *visibility = stage_visibility(&c->s, light, spec);
+  for (int k = 0; k < SIZE * SIZE; k++)
+    if (!(visibility[k] >= 0 && visibility[k] <= 1)) fail_msg("%s: %g at %d", spec, (double)visibility[k], k);
+  free(visibility);
+}
+
+static void bad_scenes_stay_sound(void **state) {
+  (void)state;
+  static const char *const specs[] = {"ssm:preset=fast", "ssm:merge=0,sides=front,layers=1", "ssm:extents=cpu",
+                                      "ssm:accumulate=fp16"};
+  static const double heights[] = {0, 1e-6, 3.999, 4, 4.5}; /* on the floor, at the light, behind it */
+  for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) {
+    scene c = {0};
+    for (size_t h = 0; h < sizeof heights / sizeof *heights; h++)
+      soup_patch(&c.casters, v3(0.1 * (double)h, heights[h], 0), v3(0.3, 0, 0), v3(0, 0, 0.4));
+    soup_quad(&c.casters, v3(-0.5, 3, -0.5), v3(0, 2, 0), v3(0, 0, 1)); /* through the light's plane */
+    scene_open(&c, 2.2);
+    static const int maps[] = {1, 2, 3, 37};
+    for (int m = 0; m < 4; m++) {
+      pn_light_desc light = light_above(maps[m]);
+      check_sound(&c, &light, specs[i]);
+      light.half_u = light.half_v = 100; /* larger than the scene */
+      check_sound(&c, &light, specs[i]);
+      light = sun_along(v3(0.3, -1, 0.1), 0.1, 0.02, maps[m]);
+      check_sound(&c, &light, specs[i]);
+    }
+    scene_close(&c);
+  }
+}
+
+/* Casters that no receiver is behind, and a light whose maps are empty: all lit, and no map to hand out. */
+static void nothing_to_shadow_is_lit(void **state) {
+  (void)state;
+  scene c = {0};
+  soup_patch(&c.casters, v3(0, -2, 0), v3(1, 0, 0), v3(0, 0, 1));
+  scene_open(&c, 2.2);
+  pn_light_desc light = light_above(32);
+  float *visibility = stage_visibility(&c.s, &light, "ssm");
+  for (int k = 0; k < SIZE * SIZE; k++) assert_true(visibility[k] == 1);
+  light.fit = PN_FIT_VISIBLE;
+  free(visibility);
+  visibility = stage_visibility(&c.s, &light, "ssm");
+  for (int k = 0; k < SIZE * SIZE; k++) assert_true(visibility[k] == 1);
+  pn_soft_shadow_map soft;
+  assert_int_equal(pn_soft_shadow_map_image(c.s.light, c.s.receiver, &soft), PN_ERROR_NOT_READY);
+  free(visibility);
+  scene_close(&c);
+}
+
+/* A wide light's map is split into tiles, which overlap by their borders: nothing is counted twice. */
+static void tiles_are_counted_once(void **state) {
+  (void)state;
+  scene c = {0};
+  soup_patch(&c.casters, v3(0, 2.5, 0), v3(6, 0, 0), v3(0, 0, 6)); /* opens to 152 degrees */
+  scene_open(&c, 2.2);
+  pn_light_desc light = light_above(64);
+  for (int merge = 0; merge < 2; merge++) {
+    float *visibility = stage_visibility(&c.s, &light, merge ? "ssm:layers=1" : "ssm:layers=1,merge=0");
+    pn_maps_info info;
+    pn_soft_shadow_map soft;
+    assert_ok(pn_light_maps(c.s.light, &info));
+    assert_true(info.tiles > 1);
+    assert_ok(pn_soft_shadow_map_image(c.s.light, c.s.receiver, &soft));
+    float *sums = gl_read_texture(soft.image.texture, 0, 0, soft.image.width, soft.image.height, 1), most = 0, least = 1;
+    for (int i = 0; i < soft.image.width * soft.image.height; i++) most = fmaxf(most, sums[i]);
+    for (int k = 0; k < SIZE * SIZE; k++) least = fminf(least, 1 - visibility[k]);
+    print_message("tiles %d: sums up to %.5f, visibility down to %.5f hidden\n", info.tiles, (double)most, (double)least);
+    assert_true(most < 1.001f);
+    assert_true(least > 0.999f); /* all of the view is umbra: no gaps between tiles */
+    free(sums);
+    free(visibility);
+  }
+  scene_close(&c);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(gpu_and_cpu_lists_agree),
+      cmocka_unit_test(parallel_plate_has_its_closed_form),
+      cmocka_unit_test(sums_in_16_bits_lose_small_patches),
+      cmocka_unit_test(devices_without_float_blending_sum_by_batches),
+      cmocka_unit_test(counted_draws_change_nothing),
+      cmocka_unit_test(bound_holds_overlaps),
+      cmocka_unit_test(bad_scenes_stay_sound),
+      cmocka_unit_test(nothing_to_shadow_is_lit),
+      cmocka_unit_test(tiles_are_counted_once),
+  };
+  return GL_RUN("ssm", tests);
+}
