@@ -23,6 +23,7 @@ static void free_pair(pn_gpu *gpu, pn_pair *pair, bool abandon) {
   pn_texture_free(gpu, &pair->image, abandon);
   pn_texture_free(gpu, &pair->low, abandon);
   pn_texture_free(gpu, &pair->search, abandon);
+  pn_texture_free(gpu, &pair->covered, abandon);
   pn_texture_free(gpu, &pair->bound, abandon);
   for (int i = 0; i < PN_WORK_MAX; i++) pn_texture_free(gpu, &pair->work[i], abandon);
   pn_receiver_map_free(gpu, &pair->seen, abandon);

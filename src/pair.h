@@ -17,6 +17,7 @@ typedef struct pn_pair {
   pn_soft_shadow_map soft;      /* of the last draw; no texture: none */
   bool warned;                  /* a technique's warning was given */
   pn_texture search;            /* what a search did, when debugging */
+  pn_texture covered;           /* how often a scattering technique came by each texel, when debugging */
   pn_texture bound;             /* of the error, when debugging, where the technique has one */
   bool drawn;
   pn_clock clock;

@@ -28,17 +28,21 @@ static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, i
   return result;
 }
 
-static void fit_light(pn_light *light, const pn_maps_want *want) {
+static pn_fit_request fit_request(const pn_light *light, const pn_maps_want *want) {
   const pn_light_desc *d = &light->desc;
-  pn_fit_request request = {.frame = &light->frame,
-                            .near_distance = d->near_distance,
-                            .range = d->range,
-                            .width = d->map_width,
-                            .height = d->map_height,
-                            .given = d->fit == PN_FIT_GIVEN ? d->fit_bounds : NULL,
-                            .visible = light->has_visible ? &light->visible : NULL,
-                            .reach = want->reach,
-                            .reach_width = want->reach_width};
+  return (pn_fit_request){.frame = &light->frame,
+                          .near_distance = d->near_distance,
+                          .range = d->range,
+                          .width = d->map_width,
+                          .height = d->map_height,
+                          .given = d->fit == PN_FIT_GIVEN ? d->fit_bounds : NULL,
+                          .visible = light->has_visible ? &light->visible : NULL,
+                          .reach = want->reach,
+                          .reach_width = want->reach_width};
+}
+
+static void fit_light(pn_light *light, const pn_maps_want *want) {
+  pn_fit_request request = fit_request(light, want);
   pn_fit_maps(light->casters, light->groups, &request, &light->maps.fit);
   if (!light->maps.fit.clamped || light->warned_angle) return;
   light->warned_angle = true;
@@ -46,8 +50,9 @@ static void fit_light(pn_light *light, const pn_maps_want *want) {
           "the map would open past 170 degrees; casters beyond are left out");
 }
 
-static pn_map_draw tile_draw(const pn_light *light, int tile) {
+static pn_map_draw tile_draw(const pn_light *light, const pn_maps_want *want, int tile) {
   const pn_fit_result *fit = &light->maps.fit;
+  pn_fit_request request = fit_request(light, want);
   pn_map_draw draw = {.frame = &light->frame,
                       .casters = light->casters,
                       .groups = light->groups,
@@ -55,6 +60,7 @@ static pn_map_draw tile_draw(const pn_light *light, int tile) {
                       .w_near = fit->w_near,
                       .w_far = fit->w_far};
   memcpy(draw.bounds, fit->tile[tile], sizeof draw.bounds);
+  if (want->focus > 0) draw.later = pn_fit_focus(&request, fit, tile, want->focus);
   return draw;
 }
 
@@ -67,7 +73,7 @@ static pn_result draw_maps(pn_light *light, const pn_maps_want *want) {
   pn_block_frame(&maps->block, &light->frame, gpu, maps->fit.tiles, maps->layers, width, height);
   maps->block.extent[3] = (float)maps->fit.w_reach;
   for (int tile = 0; tile < maps->fit.tiles && result == PN_OK; tile++) {
-    pn_map_draw draw = tile_draw(light, tile);
+    pn_map_draw draw = tile_draw(light, want, tile);
     pn_block_map(&maps->block, gpu, &draw, width, height);
     result = pn_maps_draw(gpu, maps, &draw);
   }

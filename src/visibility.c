@@ -182,6 +182,7 @@ int pn_debug_image(pn_light *light, pn_receiver *receiver, int index, const char
       {"low", pair ? &pair->low : NULL},
       {"search", pair ? &pair->search : NULL},
       {"receivers", pair ? &pair->seen.layers : NULL},
+      {"covered", pair ? &pair->covered : NULL},
       {"bound", pair ? &pair->bound : NULL},
       {"visibility", pair ? &pair->image : NULL},
   };

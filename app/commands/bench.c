@@ -103,8 +103,6 @@ static void report(struct bench *b, const char *key, const char *text, const str
   else cJSON_AddNullToObject(object, "share");
 }
 
-static double spread(const struct timing *timing) { return timing->max - timing->min; }
-
 /* A small difference needs many frames. */
 static int many_frames(const struct options *o) { return o->given[OPTION_FRAMES] ? o->frames : 5 * o->frames; }
 
@@ -124,8 +122,7 @@ static int bench_state(struct bench *b) {
     double difference = c[0].timing.median - c[1].timing.median, share = difference / c[0].timing.median;
     char text[240], verdict[60] = "not measurable (within the noise)";
     /* One frame has no spread to tell a difference from. */
-    int measurable =
-        c[0].timing.frames > 1 && fabs(difference) > fmax(spread(&c[0].timing), spread(&c[1].timing));
+    int measurable = c[0].timing.frames > 1 && fabs(difference) > fmax(c[0].timing.quartiles, c[1].timing.quartiles);
     if (measurable) snprintf(verdict, sizeof verdict, "%+.1f %%", 100 * share);
     else share = NAN;
     snprintf(text, sizeof text,

@@ -171,6 +171,7 @@ static int look_inside(struct comparison *c) {
     struct entry *e = &c->entries[i];
     int flags = PN_DEBUG_SEARCH | (c->options->save_dir ? PN_DEBUG_BOUND : 0);
     status = client_insides(c->host.client, e->light, flags, &e->insides);
+    c->techniques[i].covered = e->insides.covered;
     if (!status) sum_up_search(&c->techniques[i], e->insides.search, pixel_count(c));
   }
   return status;

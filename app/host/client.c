@@ -256,12 +256,30 @@ static int read_soft(struct client *client, pn_light *light, struct insides *out
   return status;
 }
 
+static int read_covered(struct client *client, pn_light *light, double *sum) {
+  const char *name;
+  pn_image image;
+  for (int i = 0; pn_debug_image(light, client->receiver, i, &name, &image); i++) {
+    if (strcmp(name, "covered") != 0) continue;
+    size_t count = (size_t)image.width * (size_t)image.height * (size_t)image.layers;
+    float *counts = malloc(count * sizeof *counts);
+    if (!counts) return memory_error();
+    glBindTexture(image.target, image.texture);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glGetTexImage(image.target, 0, GL_RED, GL_FLOAT, counts);
+    for (size_t k = 0; k < count; k++) *sum += counts[k];
+    free(counts);
+  }
+  return STATUS_OK;
+}
+
 int client_insides(struct client *client, pn_light *light, int debug_flags, struct insides *out) {
   memset(out, 0, sizeof *out);
   int status = client_check(client, pn_debug(client->context, debug_flags));
   if (!status) status = client_frame(client, light);
   if (!status) status = client_check(client, pn_debug(client->context, 0));
   if (!status && debug_flags & PN_DEBUG_SEARCH) status = read_debug(client, light, "search", GL_RGBA, 4, &out->search);
+  if (!status && debug_flags & PN_DEBUG_SEARCH) status = read_covered(client, light, &out->covered);
   if (!status && debug_flags & PN_DEBUG_BOUND) status = read_debug(client, light, "bound", GL_RED, 1, &out->bound);
   return status ? status : read_soft(client, light, out);
 }

@@ -35,6 +35,7 @@ struct insides {
   float *bound;  /* of the error, one float a pixel, top row first; NULL: the technique has none */
   float *soft;   /* the soft shadow map: for each layer of receivers what is hidden, top row first; NULL: none */
   int soft_width, soft_height, soft_layers;
+  double covered; /* texels that micropatches covered, in all; 0: the technique does not scatter */
 };
 int client_insides(struct client *client, pn_light *light, int debug_flags, struct insides *out);
 void insides_free(struct insides *insides);

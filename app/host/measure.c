@@ -30,6 +30,11 @@ static double median_of(double *values, int count) {
   return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
 }
 
+/* Of sorted values: how far the middle half of them spreads. */
+static double quartiles_apart(const double *values, int count) {
+  return values[3 * (count - 1) / 4] - values[(count - 1) / 4];
+}
+
 static int run_frame(struct contestant *c, double *milliseconds) {
   glFinish();
   double start = clock_ms();
@@ -86,6 +91,7 @@ static void summarise(struct contestant *c, struct record *r) {
   t->median = median_of(r->totals, r->frames);
   t->min = r->totals[0];
   t->max = r->totals[r->frames - 1];
+  t->quartiles = quartiles_apart(r->totals, r->frames);
 }
 
 static int run_all(struct contestant *contestants, struct record *records, int count, int frames, int stages) {

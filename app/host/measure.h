@@ -12,6 +12,7 @@ enum { STAGES_MAX = 24 };
 struct timing {
   int frames;              /* that were timed */
   double median, min, max; /* milliseconds a frame: maps and visibility of all the contestant's lights */
+  double quartiles;        /* how far the quartiles are apart */
   int stage_count;
   struct {
     const char *name;

@@ -58,6 +58,13 @@ static int add_bound(cJSON *object, const struct error_bound *bound) {
          add_number(item, "held", bound->held);
 }
 
+/* Of techniques that scatter. */
+static int add_scatter(cJSON *object, const struct report_technique *technique) {
+  if (technique->covered <= 0) return 1;
+  cJSON *item = cJSON_AddObjectToObject(object, "scatter");
+  return item && add_number(item, "covered", technique->covered);
+}
+
 static int add_result(cJSON *results, const struct report_technique *technique) {
   cJSON *item = cJSON_CreateObject();
   if (!item || !cJSON_AddItemToArray(results, item)) {
@@ -67,7 +74,7 @@ static int add_result(cJSON *results, const struct report_technique *technique) 
   return add_text(item, "technique", technique->name) && add_text(item, "label", technique->label) &&
          add_text(item, "file", technique->file) && add_copy(item, "parameters", technique->parameters) &&
          add_error(item, &technique->error) && add_times(item, technique) && add_search(item, technique) &&
-         add_bound(item, &technique->bound);
+         add_bound(item, &technique->bound) && add_scatter(item, technique);
 }
 
 static int fill(cJSON *json, const struct report *report) {

@@ -29,6 +29,7 @@ struct report_technique {
   double time_median, time_least, time_most; /* milliseconds a frame */
   const struct report_stage *stages;
   int stage_count;
+  double covered;           /* texels that micropatches covered, in all; 0: the technique does not scatter */
   struct error_bound bound; /* pixels 0: the technique has none, or nobody asks */
   int searched;             /* nonzero: means over the pixels whose search looked at primitives */
   double search_pixels, search_visited, search_primitives, search_window;

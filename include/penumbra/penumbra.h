@@ -126,6 +126,7 @@ typedef enum {
   PN_MESSAGE_FORWARD,                 /* the technique has no forward form, or slots are out of range */
   PN_MESSAGE_FALLBACK,                /* information: a slower way is taken because the device lacks a feature */
   PN_MESSAGE_ACCUMULATION,            /* warning: 16-bit sums of many small occluders lose some of them (technique ssm) */
+  PN_MESSAGE_STATE_MODE,              /* pn_context_desc.state is none of pn_state_mode */
   /* information, once a mesh: edges that are open, shared by three and more faces, between faces wound against each
    * other */
   PN_MESSAGE_MESH_EDGES,
@@ -255,12 +256,14 @@ PN_API pn_result pn_instance_remove(pn_casters *casters, pn_instance instance);
 /* Which surfaces a pass draws. */
 typedef enum { PN_FACES_ANY = 3, PN_FACES_FRONT = 1, PN_FACES_BACK = 2 } pn_faces;
 
-/* What a pass asks of the host's draw callback. Framebuffer, viewport, depth function, depth range, depth clamp,
- * culling and colour mask are set: do not change them. Program, vertex array, textures and buffers are the callback's
- * to bind. */
+/* What a pass asks of the host's draw callback. Framebuffer, viewport, scissor, depth function, depth range, depth
+ * clamp, culling and colour mask are set: do not change them. Program, vertex array, textures and buffers are the
+ * callback's to bind. */
 typedef struct {
   const float *clip_from_scene; /* 16 floats; GL's own depth convention (-1 to 1), never a reversed one */
-  const float *planes;          /* plane_count times 4: n.p + d >= 0 inside, scene space, for the host's culling */
+  /* plane_count times 4: n.p + d >= 0 inside, scene space, for the host's culling; around less than the matrix shows
+   * where a layer holds a part of the map only (parameter focus) */
+  const float *planes;
   int plane_count;
   pn_faces faces;     /* already set with glCullFace, for information */
   /* not 0: bound to unit peel_unit; the fragment shader must call pn_peel(), see pn_glsl("caster", ...) */
@@ -451,10 +454,11 @@ typedef struct {
  * shadow. */
 PN_API pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver, pn_soft_shadow_map *out);
 
-/* Makes techniques tell what they did, as debug images of the view's size. flags: the sum of what is wanted, 0 at first.
+/* Makes techniques tell what they did, as debug images. flags: the sum of what is wanted, 0 at first.
  * PN_DEBUG_SEARCH  "search", of techniques that search: red = class (0 no map was asked, 1 lit, 2 umbra, 3 penumbra),
  *                  green = blocks visited, blue = primitives covered, alpha = texels in the search windows; costs a
- *                  second colour target
+ *                  second colour target. Of technique `ssm`: "covered", in the layers of the soft shadow map, how many
+ *                  micropatches came by each texel; costs another drawing
  * PN_DEBUG_BOUND   "bound", of technique `ssm`: how far visibility may be off because neighbouring micropatches overlap
  *                  or part (Soft Shadow Maps, Eq. 3); costs a drawing of every micropatch, unmerged */
 enum { PN_DEBUG_SEARCH = 1, PN_DEBUG_BOUND = 2 };

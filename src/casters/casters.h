@@ -29,6 +29,7 @@ typedef struct pn_mesh_data {
   bool clockwise;
   pn_box *boxes;
   int box_count;
+  size_t box_triangles; /* each box is over that many of the triangles drawn, in order; 0: it says nothing of that */
   struct pn_mesh_edges *edges; /* NULL until a technique asks for them */
 } pn_mesh_data;
 
@@ -65,6 +66,7 @@ void pn_casters_each_box(const pn_casters *casters, uint32_t groups, pn_box_visi
 /* Draws all casters of groups into the pass that has begun. */
 typedef struct {
   pn_matrix clip_from_scene;
+  pn_matrix cull_from_scene; /* the same, or of the part of the map that counts */
   uint32_t groups;
   pn_faces faces;
   pn_gl peel; /* the previous layer, or 0 */

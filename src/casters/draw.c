@@ -16,36 +16,72 @@ pn_result pn_casters_prepare(pn_gpu *gpu, bool peel) {
   return result == PN_OK ? caster_program(gpu, true, peel, &program) : result;
 }
 
-/* Whether all eight corners of every box lie outside the same plane of the map's frustum. The near plane does not
+/* Whether all eight corners of the box lie outside the same plane of the map's frustum. The near plane does not
  * count: nearer casters are clamped to it. */
-static bool outside(const pn_mesh_data *mesh, const pn_matrix *clip_from_object) {
-  for (int b = 0; b < mesh->box_count; b++) {
-    const pn_box *box = &mesh->boxes[b];
-    int out[4] = {0};
-    for (int i = 0; i < 8; i++) {
-      double p[4] = {i & 1 ? box->max[0] : box->min[0], i & 2 ? box->max[1] : box->min[1],
-                     i & 4 ? box->max[2] : box->min[2], 1},
-             c[4];
-      pn_matrix_apply(clip_from_object, p, c);
-      out[0] += c[0] < -c[3];
-      out[1] += c[0] > c[3];
-      out[2] += c[1] < -c[3];
-      out[3] += c[1] > c[3];
-    }
-    if (out[0] < 8 && out[1] < 8 && out[2] < 8 && out[3] < 8) return false;
+static bool outside(const pn_box *box, const pn_matrix *clip_from_object) {
+  int out[4] = {0};
+  for (int i = 0; i < 8; i++) {
+    double p[4] = {i & 1 ? box->max[0] : box->min[0], i & 2 ? box->max[1] : box->min[1],
+                   i & 4 ? box->max[2] : box->min[2], 1},
+           c[4];
+    pn_matrix_apply(clip_from_object, p, c);
+    out[0] += c[0] < -c[3];
+    out[1] += c[0] > c[3];
+    out[2] += c[1] < -c[3];
+    out[3] += c[1] > c[3];
   }
-  return true;
+  return out[0] == 8 || out[1] == 8 || out[2] == 8 || out[3] == 8;
 }
 
-static pn_result draw_mesh(pn_gpu *gpu, const pn_mesh_data *mesh, const pn_matrix *clip_from_object, bool peel) {
-  if (mesh->draw_count == 0) return PN_OK;
+/* Whether what is drawn from at on, up to where the next box begins, may reach into the frustum. Where boxes do not
+ * tell triangles apart, that is all of them. */
+static bool run_inside(const pn_mesh_data *mesh, const pn_matrix *cull_from_object, size_t at) {
+  size_t first = 0, end = (size_t)mesh->box_count;
+  if (mesh->box_triangles) {
+    first = at / (3 * mesh->box_triangles);
+    end = first + 1;
+  }
+  for (size_t b = first; b < end; b++)
+    if (!outside(&mesh->boxes[b], cull_from_object)) return true;
+  return false;
+}
+
+/* From *at on, the next vertices or indices that may reach into the frustum: moves *at there, returns how many, 0 at
+ * the end. */
+static size_t next_run(const pn_mesh_data *mesh, const pn_matrix *cull_from_object, size_t *at) {
+  size_t step = mesh->box_triangles ? 3 * mesh->box_triangles : mesh->draw_count;
+  while (*at < mesh->draw_count && !run_inside(mesh, cull_from_object, *at)) *at += step;
+  if (*at >= mesh->draw_count) return 0;
+  size_t end = *at + step;
+  while (end < mesh->draw_count && run_inside(mesh, cull_from_object, end)) end += step;
+  return (end < mesh->draw_count ? end : mesh->draw_count) - *at;
+}
+
+static void draw_run(pn_gpu *gpu, const pn_mesh_data *mesh, size_t first, size_t count) {
+  if (!mesh->index_bytes) {
+    GL(gpu, DrawArrays)(GL_TRIANGLES, (GLint)first, (GLsizei)count);
+    return;
+  }
+  size_t offset = (mesh->buffers[1] ? 0 : mesh->indices.offset) + first * (size_t)mesh->index_bytes;
+  GL(gpu, DrawElements)
+  (GL_TRIANGLES, (GLsizei)count, mesh->index_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT,
+   (const void *)(uintptr_t)offset);
+}
+
+typedef struct {
+  pn_matrix clip_from_object, cull_from_object;
+} mesh_matrices;
+
+static pn_result draw_mesh(pn_gpu *gpu, const pn_mesh_data *mesh, const mesh_matrices *matrices, bool peel) {
+  size_t first = 0, count = next_run(mesh, &matrices->cull_from_object, &first);
+  if (count == 0) return PN_OK;
   const pn_program *program;
   bool alpha = mesh->alpha_texture != 0;
   pn_result result = caster_program(gpu, alpha, peel, &program);
   if (result != PN_OK) return result;
   GL(gpu, UseProgram)(program->id);
   float matrix[16];
-  pn_matrix_to_floats(clip_from_object, matrix);
+  pn_matrix_to_floats(&matrices->clip_from_object, matrix);
   GL(gpu, UniformMatrix4fv)(pn_uniform(program, "pn_clip_from_object"), 1, GL_FALSE, matrix);
   if (alpha) {
     GLint channel[4] = {mesh->alpha_channel};
@@ -56,14 +92,10 @@ static pn_result draw_mesh(pn_gpu *gpu, const pn_mesh_data *mesh, const pn_matri
   }
   GL(gpu, FrontFace)(mesh->clockwise ? GL_CW : GL_CCW);
   GL(gpu, BindVertexArray)(mesh->vertex_array);
-  if (!mesh->index_bytes) {
-    GL(gpu, DrawArrays)(GL_TRIANGLES, 0, (GLsizei)mesh->draw_count);
-    return PN_OK;
+  for (; count > 0; count = next_run(mesh, &matrices->cull_from_object, &first)) {
+    draw_run(gpu, mesh, first, count);
+    first += count;
   }
-  size_t offset = mesh->buffers[1] ? 0 : mesh->indices.offset;
-  GL(gpu, DrawElements)
-  (GL_TRIANGLES, (GLsizei)mesh->draw_count, mesh->index_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT,
-   (const void *)(uintptr_t)offset);
   return PN_OK;
 }
 
@@ -82,10 +114,10 @@ static pn_result draw_meshes(pn_casters *casters, const pn_caster_draw *draw) {
     const pn_instance_data *instance = &casters->instances[i];
     if (!(draw->groups >> instance->group & 1)) continue;
     pn_mesh_data mesh = casters->meshes[instance->mesh];
-    pn_matrix clip_from_object = pn_matrix_multiply(&draw->clip_from_scene, &instance->scene_from_object);
-    if (outside(&mesh, &clip_from_object)) continue;
+    mesh_matrices matrices = {pn_matrix_multiply(&draw->clip_from_scene, &instance->scene_from_object),
+                              pn_matrix_multiply(&draw->cull_from_scene, &instance->scene_from_object)};
     if (mirrors(&instance->scene_from_object)) mesh.clockwise = !mesh.clockwise;
-    pn_result result = draw_mesh(gpu, &mesh, &clip_from_object, draw->peel != 0);
+    pn_result result = draw_mesh(gpu, &mesh, &matrices, draw->peel != 0);
     if (result != PN_OK) return result;
   }
   return PN_OK;
@@ -107,7 +139,7 @@ static void call_host(pn_casters *casters, const pn_caster_draw *draw, int group
   pn_gpu *gpu = &casters->object.context->gpu;
   float matrix[16], planes[PLANES][4];
   pn_matrix_to_floats(&draw->clip_from_scene, matrix);
-  frustum_planes(&draw->clip_from_scene, planes);
+  frustum_planes(&draw->cull_from_scene, planes);
   pn_caster_pass pass = {matrix,       planes[0],   PLANES,      draw->faces, draw->peel,
                          PN_UNIT_PEEL, draw->layer, draw->width, draw->height};
   if (draw->peel) pn_bind_texture(gpu, PN_UNIT_PEEL, GL_TEXTURE_2D, draw->peel, false);

@@ -138,6 +138,7 @@ static size_t run_length(size_t triangles) {
 static size_t filter_triangles(pn_mesh_data *mesh, const pn_span *positions, uint32_t *kept) {
   size_t total = mesh->kept_count / 3, run = run_length(total), count = 0;
   mesh->box_count = 0;
+  mesh->box_triangles = run;
   for (size_t t = 0; t < total; t++) {
     const uint32_t *index = mesh->kept_indices + 3 * t;
     float p[3][3];
@@ -155,6 +156,7 @@ static size_t filter_triangles(pn_mesh_data *mesh, const pn_span *positions, uin
 static void box_vertices(pn_mesh_data *mesh, const pn_span *positions) {
   size_t run = run_length(positions->count);
   mesh->box_count = 0;
+  mesh->box_triangles = 0;
   for (size_t i = 0; i < positions->count; i++) {
     float p[3];
     position_at(positions, i, p);
@@ -274,6 +276,7 @@ static void given_box(pn_mesh_data *mesh, const float min[3], const float max[3]
   memcpy(mesh->boxes[0].min, min, 12);
   memcpy(mesh->boxes[0].max, max, 12);
   mesh->box_count = 1;
+  mesh->box_triangles = 0;
 }
 
 pn_result pn_mesh_build(pn_gpu *gpu, const pn_mesh_desc *d, pn_mesh_data *mesh) {

@@ -173,7 +173,7 @@ static void make_shared_objects(pn_gpu *gpu) {
 
 static pn_result copy_strings(pn_gpu *gpu) {
   if ((int)gpu->desc.state < PN_STATE_RESTORE || gpu->desc.state > PN_STATE_RESET)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_STATE_SCOPE, "state mode %d is unknown", (int)gpu->desc.state);
+    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_STATE_MODE, "state mode %d is unknown", (int)gpu->desc.state);
   if (!gpu->desc.shader_directory) return PN_OK;
   FILE *directory = fopen(gpu->desc.shader_directory, "r");
   if (!directory)

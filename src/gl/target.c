@@ -206,6 +206,11 @@ pn_result pn_pass_begin(pn_gpu *gpu, const pn_pass *pass) {
   return PN_OK;
 }
 
+void pn_pass_limit(pn_gpu *gpu, const pn_part *part) {
+  pn_set_switch(gpu, GL_SCISSOR_TEST, true);
+  pn_set_scissor(gpu, part->x, part->y, part->width, part->height);
+}
+
 void pn_draw_screen(pn_gpu *gpu) {
   GL(gpu, BindVertexArray)(gpu->vertex_array);
   GL(gpu, DrawArrays)(GL_TRIANGLES, 0, 3);

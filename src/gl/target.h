@@ -52,7 +52,14 @@ typedef struct {
   pn_blend blend; /* of color[0] */
 } pn_pass;
 
+/* Texels, from (x, y) on. */
+typedef struct {
+  int x, y, width, height;
+} pn_part;
+
 pn_result pn_pass_begin(pn_gpu *gpu, const pn_pass *pass);
+/* What the pass that has begun draws from here on stays inside part. */
+void pn_pass_limit(pn_gpu *gpu, const pn_part *part);
 /* A triangle that covers the target. The program and its uniforms are set by the caller. */
 void pn_draw_screen(pn_gpu *gpu);
 /* One value in the pass's first colour image: the host's own texture may be larger than the view, only that is

@@ -292,3 +292,17 @@ void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_reques
   snap_depth(&f, out);
   make_tiles(request, out);
 }
+
+/* ---- the part that later layers hold ----------------------------------------------------------------------------- */
+
+pn_part pn_fit_focus(const pn_fit_request *request, const pn_fit_result *fit, int tile, double share) {
+  int texels[2] = {request->width, request->height}, low[2], high[2];
+  for (int i = 0; i < 2; i++) {
+    double least = fit->bounds[i], most = fit->bounds[i + 2], half = 0.5 * share * (most - least);
+    double middle = request->frame->sun ? 0.5 * (least + most) : fmin(fmax(0, least + half), most - half);
+    double from = fit->tile[tile][i], to_texel = texels[i] / (fit->tile[tile][i + 2] - from);
+    low[i] = (int)fmin(fmax(floor((middle - half - from) * to_texel), 0), texels[i]);
+    high[i] = (int)fmin(fmax(ceil((middle + half - from) * to_texel), low[i]), texels[i]);
+  }
+  return (pn_part){low[0], low[1], high[0] - low[0], high[1] - low[1]};
+}

@@ -4,6 +4,7 @@
 #define PN_MAPS_FIT_H
 
 #include "casters/casters.h"
+#include "gl/target.h"
 #include "space/region.h"
 
 enum { PN_TILES_MAX = 9 };
@@ -36,5 +37,10 @@ typedef struct {
 void pn_fit_snap(double *low, double *high);
 
 void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_request *request, pn_fit_result *out);
+
+/* The texels of a tile that layers past the first are drawn over when they hold only this share of the fit's width and
+ * height: around the point straight below a rectangle, or as near to it as the fit reaches; for a sun, around the
+ * fit's middle. Whole texels, outwards; empty where the tile has none. */
+pn_part pn_fit_focus(const pn_fit_request *request, const pn_fit_result *fit, int tile, double share);
 
 #endif

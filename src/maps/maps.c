@@ -37,7 +37,7 @@ typedef struct {
   pn_gpu *gpu;
   pn_maps *maps;
   const pn_map_draw *draw;
-  pn_matrix clip_from_scene;
+  pn_matrix clip_from_scene, cull_from_scene; /* the second: of what later layers hold */
 } drawing;
 
 static pn_attachment layer_of(const drawing *d, int layer) {
@@ -45,8 +45,11 @@ static pn_attachment layer_of(const drawing *d, int layer) {
   return (pn_attachment){depth->id, depth->target, 0, d->draw->map * d->maps->layers + layer};
 }
 
+/* Layers past the first are drawn with the same matrix as the first, so that the same fragment has the same place and
+ * depth in each; a smaller frustum is a part of the image. */
 static pn_result draw_layer(const drawing *d, pn_attachment target, int layer, bool farthest, pn_gl peel) {
   const pn_maps_want *want = &d->maps->want;
+  const pn_part *later = layer > 0 && want->focus > 0 ? &d->draw->later : NULL;
   int width = d->maps->depth.width, height = d->maps->depth.height;
   pn_faces faces = farthest ? want->far_faces : want->near_faces;
   pn_pass pass = {.depth = target,
@@ -58,7 +61,16 @@ static pn_result draw_layer(const drawing *d, pn_attachment target, int layer, b
                   .depth_range = {PN_DEPTH_MARGIN, 1 - PN_DEPTH_MARGIN}};
   pn_result result = pn_pass_begin(d->gpu, &pass);
   if (result != PN_OK) return result;
-  pn_caster_draw draw = {d->clip_from_scene, d->draw->groups, faces ? faces : PN_FACES_ANY, peel, layer, width, height};
+  if (later && (later->width == 0 || later->height == 0)) return PN_OK;
+  if (later) pn_pass_limit(d->gpu, later);
+  pn_caster_draw draw = {.clip_from_scene = d->clip_from_scene,
+                         .cull_from_scene = later ? d->cull_from_scene : d->clip_from_scene,
+                         .groups = d->draw->groups,
+                         .faces = faces ? faces : PN_FACES_ANY,
+                         .peel = peel,
+                         .layer = layer,
+                         .width = width,
+                         .height = height};
   return pn_casters_draw_pass(d->draw->casters, &draw);
 }
 
@@ -91,11 +103,25 @@ static pn_result draw_peeled(const drawing *d) {
   return PN_OK;
 }
 
+/* The frustum of a part of the map, a texel wider than it: what float arithmetic moves across its edge is drawn. */
+static pn_matrix clip_part(const pn_matrix *clip, const pn_part *part, int width, int height) {
+  const int first[2] = {part->x, part->y}, count[2] = {part->width, part->height}, size[2] = {width, height};
+  pn_matrix narrow = pn_matrix_identity();
+  for (int i = 0; i < 2; i++) {
+    double scale = size[i] / (count[i] + 2.0), middle = (2.0 * first[i] + count[i]) / size[i] - 1;
+    narrow.m[5 * i] = scale;
+    narrow.m[12 + i] = -scale * middle;
+  }
+  return pn_matrix_multiply(&narrow, clip);
+}
+
 pn_result pn_maps_draw(pn_gpu *gpu, pn_maps *maps, const pn_map_draw *draw) {
-  drawing d = {gpu, maps, draw, {{0}}};
+  drawing d = {gpu, maps, draw, {{0}}, {{0}}};
   pn_matrix clip = pn_clip_from_light(draw->frame->sun, draw->bounds, draw->w_near, draw->w_far, draw->shear);
   pn_matrix light = pn_light_from_scene(draw->frame);
   d.clip_from_scene = pn_matrix_multiply(&clip, &light);
+  d.cull_from_scene = clip_part(&d.clip_from_scene, &draw->later, maps->depth.width, maps->depth.height);
+  maps->later[draw->map] = draw->later;
   pn_result result = PN_OK;
   if (maps->want.near_layers == 1) result = draw_layer(&d, layer_of(&d, 0), 0, false, 0);
   if (maps->want.near_layers > 1) result = draw_peeled(&d);

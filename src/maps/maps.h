@@ -8,7 +8,8 @@ enum { PN_MAPS_MAX = 16, PN_LAYERS_MAX = 16, PN_PARAMETERS_MAX = 12 };
 
 /* Largest and smallest w of neighbourhoods: a pyramid (the papers' HSM: level i over blocks of 2^i texels a side) or
  * a stack (their MSSM: level i over the 2^i x 2^i texels centred on each texel, at full resolution). Over quads, each
- * texel brings its right and upper neighbours. */
+ * texel brings its right and upper neighbours. least_there, pyramids only: a third channel has the smallest w beside
+ * empty texels, 1e30 where all are. */
 typedef enum {
   PN_RANGE_NONE = 0,
   PN_RANGE_PYRAMID,
@@ -17,7 +18,7 @@ typedef enum {
 } pn_range_structure;
 typedef struct {
   pn_range_structure structure;
-  bool quads;
+  bool quads, least_there;
 } pn_range_kind;
 
 /* What a technique wants to have drawn. In the array texture, a map's layers are: near surfaces first, nearest to
@@ -26,6 +27,7 @@ typedef struct {
   int near_layers;                /* peeled layers from the nearest; 0..PN_LAYERS_MAX */
   bool farthest;                  /* the farthest surface, as the last layer */
   pn_faces near_faces, far_faces; /* which surfaces count: PN_FACES_ANY where it does not matter */
+  float focus;                    /* layers past the first hold only this share of the map's width and height; 0: all */
   pn_range_kind range;            /* what summarises every layer */
   bool reach;                     /* maps cover what the casters can darken, not only the casters themselves */
   double reach_width;             /* ... that is so far around them, map units; 0: as far as the light's size says */
@@ -46,8 +48,9 @@ typedef struct {
   pn_texture depth, range, peel[2], aside; /* aside: a level of the stack while it is drawn */
   pn_maps_want want;
   pn_fit_result fit;
-  int layers;           /* of each map */
-  pn_light_block block; /* all but the parameters */
+  int layers;                 /* of each map */
+  pn_light_block block;       /* all but the parameters */
+  pn_part later[PN_MAPS_MAX]; /* with want.focus: what layers past the first of each map hold */
   bool ready;
 } pn_maps;
 
@@ -62,6 +65,7 @@ typedef struct {
   uint32_t groups;
   int map; /* its place in the list */
   double bounds[4], w_near, w_far, shear[2];
+  pn_part later; /* with want.focus: the texels that layers past the first are drawn over */
 } pn_map_draw;
 pn_result pn_maps_draw(pn_gpu *gpu, pn_maps *maps, const pn_map_draw *draw);
 /* Fills pyramid or stack from what was drawn; the block must be bound. (maps/range.c) */

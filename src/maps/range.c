@@ -25,7 +25,8 @@ pn_result pn_range_shape(pn_gpu *gpu, pn_texture *texture, const pn_range_kind *
                          int height) {
   if (kind->structure == PN_RANGE_PYRAMID) {
     int w = power_above(width), h = power_above(height);
-    return pn_texture_shape(gpu, texture, GL_RG32F, w, h, layers, level_count(larger(w, h)));
+    GLenum format = kind->least_there ? GL_RGBA32F : GL_RG32F;
+    return pn_texture_shape(gpu, texture, format, w, h, layers, level_count(larger(w, h)));
   }
   if (kind->structure == PN_RANGE_STACK)
     return pn_texture_shape(gpu, texture, GL_RG32F, width, height,
@@ -46,9 +47,10 @@ pn_result pn_range_prepare(pn_gpu *gpu, const pn_range_kind *kind) {
   const pn_program *program;
   pn_result result = PN_OK;
   for (int first = 0; first < 2 && result == PN_OK && kind->structure; first++)
-    result = range_program(
-        gpu, &(pn_range_kind){kind->structure, kind->quads && (first || kind->structure == PN_RANGE_STACK)}, first,
-        &program);
+    result = range_program(gpu,
+                           &(pn_range_kind){.structure = kind->structure,
+                                            .quads = kind->quads && (first || kind->structure == PN_RANGE_STACK)},
+                           first, &program);
   return result;
 }
 
@@ -72,11 +74,34 @@ static pn_result begin(const range_step *s, pn_attachment target, int width, int
   return PN_OK;
 }
 
+/* The part of a level that differs from 'nothing there', where the layer holds only a part of the map. Over quads the
+ * texels before it see its first ones. maps NULL: all of it. */
+static pn_part part_of_level(const pn_maps *maps, int layer, int level, int width, int height) {
+  if (!maps || maps->want.focus <= 0 || layer % maps->layers == 0) return (pn_part){0, 0, width, height};
+  const pn_part *held = &maps->later[layer / maps->layers];
+  if (held->width == 0 || held->height == 0) return (pn_part){0};
+  int before = maps->want.range.quads ? 1 : 0;
+  int x = larger(held->x - before, 0) >> level, y = larger(held->y - before, 0) >> level;
+  int last_x = (held->x + held->width - 1) >> level, last_y = (held->y + held->height - 1) >> level;
+  return (pn_part){x, y, last_x - x + 1, last_y - y + 1};
+}
+
+/* Draws the part, and clears the rest. */
+static void draw_part(pn_gpu *gpu, const pn_part *part, int width, int height) {
+  static const GLfloat nothing[4] = {-1e30f, -1e30f, 1e30f, 1};
+  if (part->width < width || part->height < height) {
+    GL(gpu, ClearBufferfv)(GL_COLOR, 0, nothing);
+    if (part->width == 0) return;
+    pn_pass_limit(gpu, part);
+  }
+  pn_draw_screen(gpu);
+}
+
 /* A pyramid's level from the one below: only that one may be read, so reading and drawing never meet. The shader then
  * calls it level 0. */
-static pn_result reduce(pn_gpu *gpu, const pn_texture *range, int level, int layer) {
+static pn_result reduce(pn_gpu *gpu, const pn_texture *range, const pn_maps *maps, int level, int layer) {
   const pn_program *program;
-  pn_result result = range_program(gpu, &(pn_range_kind){PN_RANGE_PYRAMID, false}, false, &program);
+  pn_result result = range_program(gpu, &(pn_range_kind){.structure = PN_RANGE_PYRAMID}, false, &program);
   if (result != PN_OK) return result;
   pn_pass pass = {.color = {{range->id, range->target, level, layer}},
                   .width = larger(range->width >> level, 1),
@@ -88,19 +113,24 @@ static pn_result reduce(pn_gpu *gpu, const pn_texture *range, int level, int lay
   GL(gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, level - 1);
   GL(gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, level - 1);
   GL(gpu, Uniform4iv)(pn_uniform(program, "pn_source"), 1, source);
-  pn_draw_screen(gpu);
+  pn_part part = part_of_level(maps, layer, level, pass.width, pass.height);
+  draw_part(gpu, &part, pass.width, pass.height);
   return PN_OK;
 }
 
-pn_result pn_range_reduce(pn_gpu *gpu, const pn_texture *range) {
+/* maps: whose layers these are, where some may hold a part of the map only. */
+static pn_result reduce_all(pn_gpu *gpu, const pn_texture *range, const pn_maps *maps) {
   pn_result result = PN_OK;
   for (int level = 1; level < range->levels; level++)
-    for (int layer = 0; layer < range->layers && result == PN_OK; layer++) result = reduce(gpu, range, level, layer);
+    for (int layer = 0; layer < range->layers && result == PN_OK; layer++)
+      result = reduce(gpu, range, maps, level, layer);
   pn_bind_texture(gpu, PN_UNIT_RANGE, range->target, range->id, true);
   GL(gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, 0);
   GL(gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, range->levels - 1);
   return result;
 }
+
+pn_result pn_range_reduce(pn_gpu *gpu, const pn_texture *range) { return reduce_all(gpu, range, NULL); }
 
 /* A stack's levels are layers of one array, which GL 3.3 does not let a pass read and draw at once: each is drawn
  * aside and copied in. */
@@ -139,9 +169,11 @@ static pn_result build_pyramid(pn_gpu *gpu, pn_maps *maps) {
     const pn_program *program;
     pn_attachment target = {range->id, range->target, 0, layer};
     result = begin(&(range_step){gpu, maps, layer, 0}, target, range->width, range->height, &program);
-    if (result == PN_OK) pn_draw_screen(gpu);
+    if (result != PN_OK) break;
+    pn_part part = part_of_level(maps, layer, 0, range->width, range->height);
+    draw_part(gpu, &part, range->width, range->height);
   }
-  return result == PN_OK ? pn_range_reduce(gpu, range) : result;
+  return result == PN_OK ? reduce_all(gpu, range, maps) : result;
 }
 
 pn_result pn_range_build(pn_gpu *gpu, pn_maps *maps) {

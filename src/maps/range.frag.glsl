@@ -1,4 +1,5 @@
-// Largest and smallest w of neighbourhoods. A pyramid's level takes 2 x 2 texels of the one below; a stack's level
+// Largest and smallest w of neighbourhoods, and the smallest beside what is empty (1e30 where all is; pyramids of three
+// channels keep it). A pyramid's level takes 2 x 2 texels of the one below; a stack's level
 // four texels of the one below, half a neighbourhood apart (Bitmask Soft Shadows, Fig. 7). The first level reads the
 // depth map; over quads each texel there stands for itself and its right and upper neighbours.
 #include "shaders/precision.glsl"
@@ -12,15 +13,17 @@ uniform ivec4 pn_source; // layer in the array of maps, level drawn, map, layer 
 uniform ivec4 pn_place;  // stack: array layer of the level below, level drawn
 layout(location = 0) out vec4 pn_out;
 
-vec2 pn_join(vec2 a, vec2 b) { return vec2(max(a.x, b.x), min(a.y, b.y)); }
+vec3 pn_join(vec3 a, vec3 b) { return vec3(max(a.x, b.x), min(a.yz, b.yz)); }
 
 #if PN_FIRST
-vec2 pn_texels(ivec2 at, int size) {
-  vec2 range = vec2(-1e30, 1e30);
+// Beyond the map nothing is, and the smallest w says so too.
+vec3 pn_texels(ivec2 at, int size) {
+  vec3 range = vec3(-1e30, 1e30, 1e30);
   for (int y = 0; y < size; y++)
-    for (int x = 0; x < size; x++)
-      // Beyond the map nothing is, and the smallest w says so too.
-      range = pn_join(range, vec2(pn_map_fetch(0, pn_maps, pn_source.z, pn_source.w, at + ivec2(x, y))));
+    for (int x = 0; x < size; x++) {
+      float w = pn_map_fetch(0, pn_maps, pn_source.z, pn_source.w, at + ivec2(x, y));
+      range = pn_join(range, vec3(w, w, w > PN_NOTHING ? w : 1e30));
+    }
   return range;
 }
 #endif
@@ -28,22 +31,22 @@ vec2 pn_texels(ivec2 at, int size) {
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
 #if PN_FIRST
-  vec2 range = pn_texels(at, PN_QUADS + 1);
+  vec3 range = pn_texels(at, PN_QUADS + 1);
 #elif PN_STACK
   // Level i lies centred: from 2^(i-1) before the texel to 2^(i-1) - 1 after it. Its four parts of level i - 1 are
   // centred a quarter aside; the first level's parts are the texel and those before it. The border is clamped.
   ivec2 last = textureSize(pn_range, 0).xy - 1;
   int step = pn_place.y > 1 ? 1 << (pn_place.y - 2) : 0;
   ivec2 a = clamp(at - (pn_place.y > 1 ? step : 1), ivec2(0), last), b = clamp(at + step, ivec2(0), last);
-  vec2 range = texelFetch(pn_range, ivec3(a, pn_place.x), 0).rg;
-  range = pn_join(range, texelFetch(pn_range, ivec3(b.x, a.y, pn_place.x), 0).rg);
-  range = pn_join(range, texelFetch(pn_range, ivec3(a.x, b.y, pn_place.x), 0).rg);
-  range = pn_join(range, texelFetch(pn_range, ivec3(b, pn_place.x), 0).rg);
+  vec3 range = texelFetch(pn_range, ivec3(a, pn_place.x), 0).rgb;
+  range = pn_join(range, texelFetch(pn_range, ivec3(b.x, a.y, pn_place.x), 0).rgb);
+  range = pn_join(range, texelFetch(pn_range, ivec3(a.x, b.y, pn_place.x), 0).rgb);
+  range = pn_join(range, texelFetch(pn_range, ivec3(b, pn_place.x), 0).rgb);
 #else
   ivec2 last = textureSize(pn_range, 0).xy - 1;
-  vec2 range = vec2(-1e30, 1e30);
+  vec3 range = vec3(-1e30, 1e30, 1e30);
   for (int i = 0; i < 4; i++)
-    range = pn_join(range, texelFetch(pn_range, ivec3(min(2 * at + ivec2(i & 1, i >> 1), last), pn_source.x), 0).rg);
+    range = pn_join(range, texelFetch(pn_range, ivec3(min(2 * at + ivec2(i & 1, i >> 1), last), pn_source.x), 0).rgb);
 #endif
-  pn_out = vec4(range, 0.0, 1.0);
+  pn_out = vec4(range, 1.0);
 }

@@ -18,7 +18,7 @@ static pn_result range_program(pn_gpu *gpu, const pn_program **out) {
 
 static pn_result shape(pn_gpu *gpu, pn_receiver_map *map) {
   const pn_receiver_map_want *w = &map->want;
-  static const pn_range_kind pyramid = {PN_RANGE_PYRAMID, false};
+  static const pn_range_kind pyramid = {.structure = PN_RANGE_PYRAMID};
   pn_result result = pn_texture_shape(gpu, &map->layers, GL_RGBA32F, w->width, w->height, w->layers, 1);
   if (result == PN_OK) result = pn_texture_shape(gpu, &map->aside, GL_RGBA32F, w->width, w->height, 0, 1);
   if (result == PN_OK) result = pn_texture_shape(gpu, &map->depth, GL_DEPTH_COMPONENT32F, w->width, w->height, 0, 1);

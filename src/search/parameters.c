@@ -9,9 +9,11 @@ const char *const pn_hierarchy_names[] = {"mssm", "hsm", "none", NULL};
 static bool descends(const pn_search_values *v) { return v->merge > 0 || v->primitive == PN_PRIMITIVE_QUAD_EXACT; }
 
 pn_range_kind pn_search_range(const pn_search_values *v) {
-  bool stack = v->hierarchy == PN_HIERARCHY_MSSM && !descends(v);
-  return (pn_range_kind){stack ? PN_RANGE_STACK : PN_RANGE_PYRAMID, v->primitive != PN_PRIMITIVE_PATCH};
+  bool descent = descends(v), stack = v->hierarchy == PN_HIERARCHY_MSSM && !descent;
+  return (pn_range_kind){stack ? PN_RANGE_STACK : PN_RANGE_PYRAMID, v->primitive != PN_PRIMITIVE_PATCH, descent};
 }
+
+float pn_search_focus(double percent) { return percent < 100 ? (float)(0.01 * percent) : 0; }
 
 int pn_search_defines(const pn_search_values *v, char *out, size_t size) {
   bool descent = descends(v);

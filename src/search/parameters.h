@@ -25,6 +25,10 @@ extern const char *const pn_hierarchy_names[];
    "quads that lack a corner are covered by the parts of the others: thin things keep their shadow; off = as in the " \
    "paper", \
    "", PN_BOOL, 0, 1, 1, NULL}
+#define PN_PARAMETER_FOCUS \
+  {"focus", "%", \
+   "layers past the first hold this part of the map's width and height, below the light; 100 = all of it", \
+   "Bitmask Soft Shadows, section 3.2", PN_FLOAT, 1, 100, 100, NULL}
 
 typedef struct {
   pn_primitive primitive;
@@ -36,6 +40,8 @@ typedef struct {
 
 /* What summarises the maps for such a search. Descent walks the pyramid, whatever narrows the window. */
 pn_range_kind pn_search_range(const pn_search_values *values);
+/* pn_maps_want.focus from the parameter's percentage. */
+float pn_search_focus(double percent);
 /* The lines search.glsl wants. Returns their length. */
 int pn_search_defines(const pn_search_values *values, char *out, size_t size);
 

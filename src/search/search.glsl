@@ -1,6 +1,6 @@
 // Finds the micro-primitives that can hide light from a receiver, in one layer of one map, and hands them to the
 // technique's cover. The technique defines before this file: pn_Cover, pn_cover_rectangle, pn_cover_quad,
-// pn_cover_or_ask, pn_is_full, and the macros
+// pn_cover_and_ask, pn_is_full, and the macros
 //   PN_PRIMITIVE  what a texel stands for, see primitive.glsl
 //   PN_GAPS       patches are widened to meet their left and lower neighbours
 //   PN_EDGES      quads that lack a corner are covered by the parts that belong to the others
@@ -293,11 +293,12 @@ void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, p
 
 struct pn_Rectangle { vec2 low, high; }; // on the light, 0 to 1
 
-// One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Only one field is made:
-// of the rectangle that the block becomes, or, when it does not become one, of what it could hide at most.
+// One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Wherever in its range the
+// surface lies, it hides no more than the hull of the block's projections at both ends of the range, and, where it has
+// no hole, no less than what both have in common.
 int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer,
                    ivec2 node, int level, float merge, inout pn_Cover c, out pn_Quad quad) {
-  vec2 dw = texelFetch(range, ivec3(node, map * pn_map_layers(light) + layer), level).rg - r.m.z; // largest, smallest
+  vec3 dw = texelFetch(range, ivec3(node, map * pn_map_layers(light) + layer), level).rgb - r.m.z; // largest, smallest, that of what is there
   vec2 extent = pn_extent(light);
   vec2 low = pn_block_st(light, map, node << level) - r.m.xy, high = pn_block_st(light, map, (node + 1) << level) - r.m.xy;
   bool beside = any(greaterThan(low, extent * dw.x)) || any(lessThan(high, -extent * dw.x));
@@ -310,7 +311,7 @@ int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray ra
   const vec2 margin = vec2(0.0);
   const float rise = 0.0;
 #endif
-  float dw_least = max(dw.y, r.epsilon_w);
+  float dw_least = max(dw.z, r.epsilon_w);
   vec2 front = pn_front_range(r, low + margin, high - margin, dw_least, dw.x);
   // not nearer, not before the light, or behind the tangent plane
   if (dw.x <= r.epsilon_w || beside || front.y <= rise) return PN_SKIP;
@@ -319,12 +320,14 @@ int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray ra
   vec2 a0 = clamp(0.5 + scale * low / dw.x, 0.0, 1.0), a1 = clamp(0.5 + scale * low / dw_least, 0.0, 1.0);
   vec2 b0 = clamp(0.5 + scale * high / dw.x, 0.0, 1.0), b1 = clamp(0.5 + scale * high / dw_least, 0.0, 1.0);
   vec2 moved = max(abs(a0 - a1), abs(b0 - b1));
-  bool one = dw.y > r.epsilon_w && front.x > rise && max(moved.x, moved.y) <= merge;
+  bool solid = dw.y > r.epsilon_w && front.x > rise;
+  bool one = solid && max(moved.x, moved.y) <= merge;
   // A block that is itself no larger on the light than what may be moved is looked at no closer: its corners stand
   // for it, as a texel's do.
-  vec2 size = scale * (high - low) / dw_least;
+  vec2 size = scale * (high - low) / max(dw.y, r.epsilon_w);
   bool leaf = level == 0 || pn_search_turns >= PN_TURNS || PN_PRIMITIVE != PN_PATCH && max(size.x, size.y) <= merge;
   pn_Rectangle most = pn_Rectangle(min(a0, a1), max(b0, b1));
+  pn_Rectangle least = pn_Rectangle(max(a0, a1), solid ? min(b0, b1) : vec2(0.0));
 #if PN_PRIMITIVE == PN_PATCH
   pn_Rectangle as_one = pn_Rectangle(0.5 * (a0 + a1), 0.5 * (b0 + b1));
 #else
@@ -336,8 +339,8 @@ int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray ra
   one = one || leaf && quad.some && !quad.whole;
 #endif
 #endif
-  if (one) most = as_one;
-  bool done = pn_cover_or_ask(c, most.low, most.high, one);
+  if (one) most = least = as_one;
+  bool done = pn_cover_and_ask(c, least.low, least.high, most.low, most.high, one);
   if (one) pn_search_done.z += 1.0;
 #if PN_PRIMITIVE == PN_QUAD_EXACT
   if (!done && leaf && quad.whole) return PN_LEAF_QUAD;

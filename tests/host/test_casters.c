@@ -19,7 +19,7 @@ enum { PIXELS = CAMERA_WIDTH * CAMERA_HEIGHT };
 /* Every technique that casts from a draw callback, cheap enough to be drawn often. */
 static const char *const techniques[] = {
     "hard",   "pcf", "pcf:filter=bicubic", "pcss", "average:samples=16", "ssm", "backprojection", "bitmask:maps=layers",
-    "bitmask"};
+    "bitmask:maps=layers,layers=4,focus=40", "bitmask"};
 
 static int usable(const char *spec) {
   const pn_technique *technique = NULL;

@@ -1,49 +1,16 @@
 #!/usr/bin/env bash
 # The bars of bitmask soft shadows, in the standard set-up: 1024 x 768 pixels, maps of 512 x 512, 1024 rays.
-#   bitmask.sh PROGRAM [PART...]    parts: split self fusion samples merge; all of them without any
+#   bitmask.sh PROGRAM [PART...]    parts: split self fusion focus samples merge; all of them without any
 # PENUMBRA_BARS_SIZE: another picture size, to look sooner. Every result is printed; a bar that is missed fails.
 set -u
 program=$1
 shift
-parts=${*:-split self fusion samples merge}
+parts=${*:-split self fusion focus samples merge}
 size=${PENUMBRA_BARS_SIZE:-1024x768}
 small=${PENUMBRA_BARS_SIZE:-320x240} # where every scene is looked at
 bunny=/usr/share/glmark2/models/bunny.obj
 scenes="square boxes cylinder balls silhouette silhouette-standing fence leaves room terrain copies"
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-export XDG_CACHE_HOME=$work/cache
-missed=0
-
-# measure NAME SIZE SCENE OPTIONS...: what each technique got, as lines "label key value" in the file NAME
-measure() {
-  local name=$1 size=$2 scene=$3
-  shift 3
-  "$program" compare "$scene" --size "$size" --frames 1 --quiet --json "$work/$name.json" "$@" >"$work/out" || {
-    echo "FAILED: penumbra compare $scene $*"
-    exit 1
-  }
-  awk '/"label":/ { label = $2; gsub(/"|",?$/, "", label) }
-       /"(mae|max|visited|window|primitives)":/ { key = $1; gsub(/[":]/, "", key); print label, key, $2 + 0 }' \
-    "$work/$name.json" >"$work/$name"
-  awk -v name="$name" '$2 == "mae" { label = $1; mae = $3 } $2 == "max" && label != "" { printf "  %-28s %-58s %.4f  max %.3f\n", name, label, mae, $3; label = "" }' \
-    "$work/$name"
-}
-
-value() { # NAME LABEL KEY
-  awk -v label="$2" -v key="$3" '$1 == label && $2 == key { print $3; found = 1 } END { if (!found) print "missing" }' "$work/$1"
-}
-
-bar() { # TEXT A CONDITION OF a AND b, B
-  local verdict=ok
-  awk -v a="$2" -v b="$4" "BEGIN { exit !(a != \"missing\" && b != \"missing\" && ($3)) }" || {
-    verdict=MISSED
-    missed=$((missed + 1))
-  }
-  printf '%-6s %-70s a = %-10.7s b = %-10.7s %s\n' "$verdict" "$1" "$2" "$4" "$3"
-}
-
-rows() { case " $parts " in *" $1 "*) echo "== $1" ;; *) return 1 ;; esac; }
+. "$(dirname "${BASH_SOURCE[0]}")/measured.sh"
 
 patch=bitmask:primitive=patch,merge=0
 quad=bitmask:primitive=quad,merge=0
@@ -81,6 +48,17 @@ if rows fusion; then
     bar "$scene: four layers" "$(value $scene $four_quads mae)" "a <= 0.012" 0
   done
   bar "silhouette-standing: four layers (a) beat two maps (b)" "$(value $scene $four_quads mae)" "a < b" "$(value $scene $quad mae)"
+fi
+
+if rows focus; then
+  all=bitmask:maps=layers,layers=4
+  for scene in $bunny builtin:balls builtin:silhouette builtin:boxes builtin:leaves builtin:room builtin:copies; do
+    name=${scene##*[:/]}
+    measure focus-$name "$small" $scene -t bitmask:maps=front -t $all,focus=50 -t $all,focus=75 -t $all
+    bar "$name: later layers over half of the map (a), one layer (b)" "$(value focus-$name $all,focus=50 mae)" "a <= b" "$(value focus-$name bitmask:maps=front mae)"
+    bar "$name: later layers over three quarters (a), over half (b)" "$(value focus-$name $all,focus=75 mae)" "a <= b" "$(value focus-$name $all,focus=50 mae)"
+    bar "$name: all of the later layers (a), three quarters (b)" "$(value focus-$name $all mae)" "a <= b + 0.0001" "$(value focus-$name $all,focus=75 mae)"
+  done
 fi
 
 if rows samples; then

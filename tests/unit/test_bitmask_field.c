@@ -18,10 +18,11 @@ static point sample_at(int kind, int i, int j) {
   return (point){(i + (j & 1 ? 0.25 : 0.75)) / n, (j + (i & 1 ? 0.75 : 0.25)) / n};
 }
 
-/* Rows of eight, sixteen or thirty-two bits, lowest first, packed into words. */
+/* Words of several rows, in which a column's bits stand together, as field.glsl says. */
 static int bit_at(int kind, const uint32_t *words, int i, int j) {
-  int bit = j * kinds[kind].grid + i;
-  return words[bit / 32] >> (bit % 32) & 1;
+  int rows = 32 / kinds[kind].grid, bit = rows * i + j % rows;
+  if (kinds[kind].code == 17) bit = 4 * (i / 2) + 2 * (j % 2) + i % 2;
+  return words[j / rows] >> bit & 1;
 }
 
 static int words_of(int kind) { return kinds[kind].grid * kinds[kind].grid / 32; }

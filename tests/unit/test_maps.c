@@ -364,7 +364,7 @@ static void test_small_layered(void **state) {
   (void)state;
   for (int structure = PN_RANGE_PYRAMID; structure <= PN_RANGE_STACK; structure++)
     for (int i = 0; i < 64; i++) {
-      const pn_maps_want want = {.near_layers = 1 + i % 4, .farthest = i & 1, .range = {(pn_range_structure)structure, false}};
+      const pn_maps_want want = {.near_layers = 1 + i % 4, .farthest = i & 1, .range = {(pn_range_structure)structure, false, false}};
       bench b;
       bench_open(&b, false);
       cast_leaves(&b, 4);
@@ -377,7 +377,7 @@ static void test_small_layered(void **state) {
 static void check_ranges(pn_range_structure structure, void (*check)(const bench *)) {
   static const int more[][2] = {{64, 64}, {100, 37}, {1, 64}, {65, 2}};
   for (int quads = 0; quads < 2; quads++) {
-    const pn_maps_want want = {.near_layers = 1, .range = {structure, quads}};
+    const pn_maps_want want = {.near_layers = 1, .range = {structure, quads, false}};
     bench b;
     bench_open(&b, false);
     cast_leaves(&b, 3);

@@ -107,9 +107,10 @@ static void add_others(void) {
   for (int i = 0; i < 2; i++) {
     snprintf(defines, sizeof defines, "PN_FIRST %d\n", i);
     add_key(screen, "techniques/ssm/nodes.frag.glsl", "", defines);
-    snprintf(defines, sizeof defines, "PN_BOUND %d\n", i);
+    snprintf(defines, sizeof defines, "PN_SUM %d\n", i);
     add_key("techniques/ssm/patch.vert.glsl", "techniques/ssm/patch.frag.glsl", "", defines);
   }
+  add_key("techniques/ssm/patch.vert.glsl", "techniques/ssm/patch.frag.glsl", "", "PN_SUM 2\n");
   add_key(screen, "techniques/ssm/list.frag.glsl", "", "");
   add_key(screen, "techniques/ssm/arguments.frag.glsl", "", "");
   add_key(screen, "techniques/ssm/add.frag.glsl", "", "");

@@ -1,7 +1,7 @@
 #include "search/parameters.h"
 #include "techniques/technique.h"
 
-enum { PRESET, PRIMITIVE, GAPS, LAYERS, HIERARCHY, CAP, MERGE, EDGES, COUNT };
+enum { PRESET, PRIMITIVE, GAPS, LAYERS, HIERARCHY, CAP, MERGE, EDGES, FOCUS, COUNT };
 
 static const char *const presets[] = {"fast", "good", "exact", NULL};
 static const char *const primitives[] = {"patch", "quad", NULL};
@@ -19,6 +19,7 @@ static const pn_parameter parameters[COUNT] = {
     [CAP] = PN_PARAMETER_CAP("Guennebaud et al. 2006"),
     [MERGE] = PN_PARAMETER_MERGE,
     [EDGES] = PN_PARAMETER_EDGES,
+    [FOCUS] = PN_PARAMETER_FOCUS,
 };
 
 static void preset(int choice, double *values) {
@@ -40,7 +41,8 @@ static pn_search_values search_values(const double *values) {
 
 static void want(const double *values, pn_maps_want *out) {
   pn_search_values search = search_values(values);
-  *out = (pn_maps_want){.near_layers = (int)values[LAYERS], .range = pn_search_range(&search)};
+  *out = (pn_maps_want){
+      .near_layers = (int)values[LAYERS], .focus = pn_search_focus(values[FOCUS]), .range = pn_search_range(&search)};
 }
 
 static void defines(const double *values, char out[PN_TECHNIQUE_DEFINES]) {

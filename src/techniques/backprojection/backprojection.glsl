@@ -18,11 +18,11 @@ void pn_cover_quad(inout pn_Cover c, pn_Quad q) {
   c += 0.5 * abs(a.x * b.y - a.y * b.x);
 }
 
-// Covers the rectangle, or asks whether it is hidden already: a sum does not know, unless nothing of it lies on the
-// light.
-bool pn_cover_or_ask(inout pn_Cover c, vec2 low, vec2 high, bool cover) {
-  if (cover) pn_cover_rectangle(c, low, high);
-  return cover || any(lessThanEqual(high, low));
+// Covers a block that is one primitive. What others hide at least would be counted again with their parts, and what is
+// hidden already a sum does not know: they are done only when nothing of them lies on the light.
+bool pn_cover_and_ask(inout pn_Cover c, vec2 low, vec2 high, vec2 most_low, vec2 most_high, bool one) {
+  if (one) pn_cover_rectangle(c, low, high);
+  return one || any(lessThanEqual(most_high, most_low));
 }
 
 bool pn_is_full(pn_Cover c) { return c >= 1.0; }

@@ -3,7 +3,7 @@
 #include "search/parameters.h"
 #include "techniques/technique.h"
 
-enum { PRESET, SAMPLES, PRIMITIVE, MAPS, LAYERS, HIERARCHY, CAP, MERGE, EDGES, COUNT };
+enum { PRESET, SAMPLES, PRIMITIVE, MAPS, LAYERS, HIERARCHY, CAP, MERGE, EDGES, FOCUS, COUNT };
 enum { SAMPLES_16J, SAMPLES_8, SAMPLES_16, SAMPLES_32 };
 enum { MAPS_FRONT, MAPS_TWO_SIDED, MAPS_LAYERS };
 
@@ -29,6 +29,7 @@ static const pn_parameter parameters[COUNT] = {
     [CAP] = PN_PARAMETER_CAP("section 7"),
     [MERGE] = PN_PARAMETER_MERGE,
     [EDGES] = PN_PARAMETER_EDGES,
+    [FOCUS] = PN_PARAMETER_FOCUS,
 };
 
 static void preset(int choice, double *values) {
@@ -62,6 +63,7 @@ static void want(const double *values, pn_maps_want *out) {
   int kind = (int)values[MAPS];
   *out = (pn_maps_want){.near_layers = kind == MAPS_LAYERS ? (int)values[LAYERS] : 1,
                         .farthest = kind == MAPS_TWO_SIDED,
+                        .focus = pn_search_focus(values[FOCUS]),
                         .range = pn_search_range(&search)};
 }
 

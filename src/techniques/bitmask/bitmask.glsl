@@ -27,14 +27,13 @@ void pn_cover_quad_row(inout pn_Cover c, pn_Quad q, int row) {
 // Section 4: an arbitrary quad is covered by its rectangle.
 void pn_cover_quad(inout pn_Cover c, pn_Quad q) { pn_cover_rectangle(c, q.low, q.high); }
 
-// Covers the rectangle, or asks whether it is hidden already; true when it is now.
-bool pn_cover_or_ask(inout pn_Cover c, vec2 low, vec2 high, bool cover) {
-  pn_Field f = pn_rectangle(low, high);
+// Covers what a block hides at least; true when nothing is left of what it hides at most. (one: both are the same.)
+bool pn_cover_and_ask(inout pn_Cover c, vec2 low, vec2 high, vec2 most_low, vec2 most_high, bool one) {
+  pn_Field least = pn_rectangle(low, high), most = pn_rectangle(most_low, most_high);
   uvec4 open = uvec4(0u);
-  uint take = cover ? 0xffffffffu : 0u;
   for (int i = 0; i < PN_WORDS; i++) {
-    c.bits[i] |= f.bits[i] & take;
-    open |= f.bits[i] & ~c.bits[i];
+    c.bits[i] |= least.bits[i];
+    open |= most.bits[i] & ~c.bits[i];
   }
   return open == uvec4(0u);
 }

@@ -13,66 +13,95 @@
 #endif
 
 // Words: 8 x 8 keeps four rows in each of two words, 16 x 16 two rows in each of eight, 32 x 32 one row in each of 32.
+// Within a word the bits of a column stand together, so that a rectangle's part of any word is the same columns and a
+// repeated group of lines: 8: bit 4 i + j % 4 (lines are rows), 16: 2 i + j % 2, 16j: 4 (i / 2) + 2 (j % 2) + i % 2
+// (two lines a row: its even columns, its odd ones), 32: i.
 #if PN_GRID == 8
 #define PN_WORDS 1
+#define PN_LINES 4
+#define PN_REPEAT 0x11111111u
+#elif PN_SAMPLES == 17
+#define PN_WORDS 2
+#define PN_LINES 4
+#define PN_REPEAT 0x11111111u
 #elif PN_GRID == 16
 #define PN_WORDS 2
+#define PN_LINES 2
+#define PN_REPEAT 0x55555555u
 #else
 #define PN_WORDS 8
+#define PN_LINES 1
+#define PN_REPEAT 0xffffffffu
 #endif
 
 struct pn_Field { uvec4 bits[PN_WORDS]; };
 
 // Bits from first up to, not including, last; 0 <= first, last <= 32.
-uint pn_bits_below(int n) { return n >= 32 ? 0xffffffffu : (1u << uint(n)) - 1u; }
-uint pn_bit_range(int first, int last) { return pn_bits_below(last) & ~pn_bits_below(first); }
+uint pn_bit_range(int first, int last) {
+  return last > first ? (0xffffffffu >> uint(32 - (last - first))) << uint(first) : 0u;
+}
 
 // Samples along one axis whose coordinates, at offset in their cells, lie in [low, high).
 uint pn_sample_range(float low, float high, float offset) {
   ivec2 ends = ivec2(clamp(ceil(vec2(low, high) * float(PN_GRID) - offset), 0.0, float(PN_GRID)));
-  return pn_bit_range(ends.x, max(ends.x, ends.y));
+  return pn_bit_range(ends.x, ends.y);
 }
 
-// Rows (a bit for each) and, along a row, columns, to the words of the field. Columns come twice: for even and odd
-// rows; rows too: for even and odd columns. Regular grids pass the same twice.
-uvec4 pn_spread_rows(uint rows, int word) {
+// Lines (a bit for each) to the words of the field: all columns of those.
+uvec4 pn_spread_lines(uint lines, int word) {
 #if PN_GRID == 8
-  // Two words of four rows; each row's bit becomes a byte.
-  uvec2 four = (uvec2(rows) >> uvec2(0u, 4u)) & 15u;
-  return uvec4(((four * 0x00204081u) & 0x01010101u) * 255u, 0u, 0u);
-#elif PN_GRID == 16
-  uvec4 two = (uvec4(rows) >> (uvec4(0u, 2u, 4u, 6u) + uint(8 * word))) & 3u;
-  return (two & 1u) * 0xffffu | (two >> 1u) * 0xffff0000u;
+  return uvec4((uvec2(lines) >> uvec2(0u, 4u) & 15u) * PN_REPEAT, 0u, 0u);
 #else
-  return ((uvec4(rows) >> (uvec4(0u, 1u, 2u, 3u) + uint(4 * word))) & 1u) * 0xffffffffu;
+  uvec4 shift = uvec4(0u, 1u, 2u, 3u) * uint(PN_LINES) + uint(4 * PN_LINES * word);
+  return (uvec4(lines) >> shift & ((1u << uint(PN_LINES)) - 1u)) * PN_REPEAT;
 #endif
 }
 
-uint pn_spread_columns(uint even_rows, uint odd_rows) {
+// One row's columns, a bit for each, to their places in its word.
+uint pn_spread_columns(uint columns, int row) {
 #if PN_GRID == 8
-  return even_rows * 0x01010101u;
+  columns = (columns | columns << 12) & 0x000f000fu;
+  columns = (columns | columns << 6) & 0x03030303u;
+  return ((columns | columns << 3) & 0x11111111u) << uint(row & 3);
 #elif PN_GRID == 16
-  return even_rows | odd_rows << 16;
+  columns = (columns | columns << 8) & 0x00ff00ffu;
+  columns = (columns | columns << 4) & 0x0f0f0f0fu;
+  columns = (columns | columns << 2) & 0x33333333u;
+#if PN_SAMPLES == 17
+  return columns << uint(2 * (row & 1));
 #else
-  return even_rows;
+  return ((columns | columns << 1) & 0x55555555u) << uint(row & 1);
+#endif
+#else
+  return columns;
+#endif
+}
+
+uint pn_lines_of_row(int row) {
+#if PN_SAMPLES == 17
+  return 3u << uint(2 * row);
+#else
+  return 1u << uint(row);
 #endif
 }
 
 const uint pn_even_columns = 0x55555555u;
 
-// The samples inside a rectangle.
+// The samples inside a rectangle. The displaced samples' coordinates, all of them together, are those of a regular grid
+// of 32: along y sample (i, j) is at 2 j + i % 2, which is its line; along x at 2 i + (j + 1) % 2. So there too each axis
+// is one range.
 pn_Field pn_rectangle(vec2 low, vec2 high) {
   pn_Field f;
 #if PN_SAMPLES == 17
-  uint columns = pn_spread_columns(pn_sample_range(low.x, high.x, 0.75), pn_sample_range(low.x, high.x, 0.25));
-  uint rows_even = pn_sample_range(low.y, high.y, 0.25), rows_odd = pn_sample_range(low.y, high.y, 0.75);
-  for (int i = 0; i < PN_WORDS; i++)
-    f.bits[i] = columns & (pn_spread_rows(rows_even, i) & pn_even_columns | pn_spread_rows(rows_odd, i) & ~pn_even_columns);
+  ivec4 ends = ivec4(clamp(ceil(vec4(low, high) * 32.0 - 0.5), 0.0, 32.0));
+  uint found = pn_bit_range(ends.x, ends.z), lines = pn_bit_range(ends.y, ends.w);
+  // from 4 (i / 2) + 2 (i % 2) + (j + 1) % 2 to the places in a word
+  uint columns = found >> 1 & 0x11111111u | found >> 2 & 0x22222222u | found << 2 & 0x44444444u | found << 1 & 0x88888888u;
 #else
-  uint one = pn_sample_range(low.x, high.x, 0.5);
-  uint columns = pn_spread_columns(one, one), rows = pn_sample_range(low.y, high.y, 0.5);
-  for (int i = 0; i < PN_WORDS; i++) f.bits[i] = columns & pn_spread_rows(rows, i);
+  ivec4 ends = ivec4(clamp(ceil(vec4(low, high) * float(PN_GRID) - 0.5), 0.0, float(PN_GRID)));
+  uint columns = pn_bit_range(ends.x * PN_LINES, ends.z * PN_LINES), lines = pn_bit_range(ends.y, ends.w);
 #endif
+  for (int i = 0; i < PN_WORDS; i++) f.bits[i] = columns & pn_spread_lines(lines, i);
   return f;
 }
 
@@ -111,8 +140,8 @@ void pn_add_triangle_row(inout pn_Field f, vec2 a, vec2 b, vec2 c, int j) {
 #else
   uint columns = pn_triangle_row(a, b, c, (float(j) + 0.5) / float(PN_GRID), 0.5);
 #endif
-  uint spread = pn_spread_columns(columns, columns);
-  for (int i = 0; i < PN_WORDS; i++) f.bits[i] |= spread & pn_spread_rows(1u << uint(j), i);
+  uint spread = pn_spread_columns(columns, j), lines = pn_lines_of_row(j);
+  for (int i = 0; i < PN_WORDS; i++) f.bits[i] |= spread & pn_spread_lines(lines, i);
 }
 
 // Adds the samples inside a triangle, row by row.
@@ -154,8 +183,8 @@ pn_Field pn_field_horizon(vec2 extent, vec2 n, float k) {
 #endif
       columns |= dot(slope, p) > at ? 1u << uint(i) : 0u;
     }
-    uint spread = pn_spread_columns(columns, columns);
-    for (int w = 0; w < PN_WORDS; w++) f.bits[w] |= spread & pn_spread_rows(1u << uint(j), w);
+    uint spread = pn_spread_columns(columns, j), lines = pn_lines_of_row(j);
+    for (int w = 0; w < PN_WORDS; w++) f.bits[w] |= spread & pn_spread_lines(lines, w);
   }
   return f;
 }

@@ -19,7 +19,7 @@ static void preset(int choice, double *values) {
 
 static void want(const double *values, pn_maps_want *out) {
   (void)values;
-  *out = (pn_maps_want){.near_layers = 1, .range = {PN_RANGE_PYRAMID, false}};
+  *out = (pn_maps_want){.near_layers = 1, .range = {PN_RANGE_PYRAMID, false, false}};
 }
 
 const pn_technique_class pn_technique_pcss = {

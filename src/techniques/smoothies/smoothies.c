@@ -32,7 +32,8 @@ static void preset(int choice, double *values) {
 }
 
 static void want(const double *values, pn_maps_want *out) {
-  *out = (pn_maps_want){.near_layers = 1, .range = {PN_RANGE_OWN, false}, .reach = true, .reach_width = values[WIDTH]};
+  *out = (pn_maps_want){
+      .near_layers = 1, .range = {.structure = PN_RANGE_OWN}, .reach = true, .reach_width = values[WIDTH]};
 }
 
 /* ---- programs ---------------------------------------------------------------------------------------------------- */

@@ -9,7 +9,7 @@ flat in vec4 pn_rectangle;
 flat in vec3 pn_served;
 layout(location = 0) out vec4 pn_out;
 
-#if PN_BOUND
+#if PN_SUM == 1
 flat in vec2 pn_neighbours;
 
 // Soft Shadow Maps, Eq. 3: how far a micropatch and its neighbour beyond the edge at position at overlap, or part, at
@@ -39,7 +39,9 @@ void main() {
   vec2 scale = 0.5 / (pn_extent(0) * max(nearer, 1e-30));
   vec2 low = clamp((pn_rectangle.xy - st) * scale, -0.5, 0.5), high = clamp((pn_rectangle.zw - st) * scale, -0.5, 0.5);
   vec2 covered = high - low;
-#if PN_BOUND
+#if PN_SUM == 2
+  pn_out = vec4(1.0, 0.0, 0.0, 1.0);
+#elif PN_SUM == 1
   bool below = seen.x > -1e29 && seen.x < w;
   pn_out = vec4(below ? pn_error_bound(st, seen.x, covered) : 0.0, 0.0, 0.0, 1.0);
 #else

@@ -4,7 +4,7 @@
 
 uniform highp sampler2D pn_work; // the list
 uniform highp sampler2D pn_alpha; // its limits
-#if PN_BOUND
+#if PN_SUM == 1
 uniform highp sampler2DArray pn_range; // of the occluder maps
 uniform ivec4 pn_layer;
 flat out vec2 pn_neighbours;       // w of the right and the upper texel
@@ -22,7 +22,7 @@ void main() {
   float w = patch_texels.w;
   pn_rectangle = vec4(low, high);
   pn_served = vec3(w, limits.xy);
-#if PN_BOUND
+#if PN_SUM == 1
   ivec2 texel = ivec2(patch_texels.xy), last = textureSize(pn_range, 0).xy - 1;
   pn_neighbours = vec2(texelFetch(pn_range, ivec3(min(texel + ivec2(1, 0), last), pn_layer.y), 0).r,
                        texelFetch(pn_range, ivec3(min(texel + ivec2(0, 1), last), pn_layer.y), 0).r);

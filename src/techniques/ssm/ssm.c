@@ -59,9 +59,12 @@ static void want(const double *values, pn_maps_want *out) {
 
 /* ---- programs ---------------------------------------------------------------------------------------------------- */
 
-static pn_result patch_program(pn_gpu *gpu, bool bound, const pn_program **out) {
-  pn_program_key key = {"techniques/ssm/patch.vert.glsl", "techniques/ssm/patch.frag.glsl", NULL,
-                        bound ? "PN_BOUND 1\n" : "PN_BOUND 0\n"};
+/* What is summed up: the shadow, the bound of its error, or how many micropatches there are. */
+typedef enum { SUM_SHADOW, SUM_BOUND, SUM_COUNT } sum_kind;
+
+static pn_result patch_program(pn_gpu *gpu, sum_kind kind, const pn_program **out) {
+  static const char *const defines[] = {"PN_SUM 0\n", "PN_SUM 1\n", "PN_SUM 2\n"};
+  pn_program_key key = {"techniques/ssm/patch.vert.glsl", "techniques/ssm/patch.frag.glsl", NULL, defines[kind]};
   return pn_program_get(gpu, &key, out);
 }
 
@@ -81,7 +84,7 @@ static pn_result prepare(pn_gpu *gpu, const double *values) {
   static const char *const receivers[] = {"PN_NORMALS 0\nPN_MASK 0\n", "PN_NORMALS 1\nPN_MASK 0\n"};
   const pn_program *program;
   pn_result result = ssm_gpu_prepare(gpu);
-  if (result == PN_OK) result = patch_program(gpu, false, &program);
+  if (result == PN_OK) result = patch_program(gpu, SUM_SHADOW, &program);
   if (result == PN_OK) result = add_program(gpu, &program);
   for (int i = 0; i < 2 && result == PN_OK; i++) result = lookup_program(gpu, receivers[i], false, &program);
   return result == PN_OK ? pn_receiver_map_prepare(gpu, (int)values[LAYERS]) : result;
@@ -133,13 +136,13 @@ static bool place(const pn_visibility_request *r, const pn_region *seen, pn_rece
 typedef struct {
   const pn_visibility_request *r;
   int accumulate;
-  bool bound; /* the error's bound instead of the shadow */
+  sum_kind kind;
   const pn_texture *soft;
   int sum;              /* by batches: which of two images holds it */
   pn_attachment target; /* the layer of it that is summed up */
 } scattering;
 
-static bool by_batches(const scattering *s) { return s->accumulate == ACCUMULATE_BATCHED && !s->bound; }
+static bool by_batches(const scattering *s) { return s->accumulate == ACCUMULATE_BATCHED && s->kind == SUM_SHADOW; }
 
 static pn_result begin_target(const scattering *s, pn_attachment target, pn_blend blend, bool clear) {
   pn_pass pass = {.color = {target}, .width = s->soft->width, .height = s->soft->height, .blend = blend};
@@ -155,7 +158,7 @@ static pn_result begin_patches(const scattering *s, const ssm_list *list, pn_att
   pn_gpu *gpu = s->r->gpu;
   const pn_texture *work = s->r->pair->work;
   const pn_program *program;
-  pn_result result = patch_program(gpu, s->bound, &program);
+  pn_result result = patch_program(gpu, s->kind, &program);
   if (result == PN_OK) result = begin_target(s, target, PN_BLEND_ADD, clear);
   if (result != PN_OK) return result;
   GL(gpu, UseProgram)(program->id);
@@ -230,7 +233,7 @@ static pn_result draw_list(scattering *s, const ssm_list *list, int total) {
 }
 
 static void mark(const scattering *s, const char *stage) {
-  pn_clock_mark(s->r->gpu, &s->r->pair->clock, s->bound ? "bound" : stage);
+  pn_clock_mark(s->r->gpu, &s->r->pair->clock, s->kind ? "debug" : stage);
 }
 
 static pn_result scatter_gpu(scattering *s, ssm_list *list) {
@@ -287,7 +290,7 @@ static pn_result scatter(scattering *s, int side, int seen_layer) {
                      .map = map,
                      .layer = side,
                      .seen_layer = seen_layer,
-                     .share = s->bound ? 0 : s->r->values[MERGE] / 100};
+                     .share = s->kind == SUM_BOUND ? 0 : s->r->values[MERGE] / 100};
     result = s->r->values[EXTENTS] == EXTENTS_CPU ? scatter_cpu(s, &list) : scatter_gpu(s, &list);
   }
   if (result == PN_OK) end_sum(s);
@@ -309,7 +312,7 @@ static pn_result look_up(const scattering *s, pn_attachment target) {
   char defines[PN_RECEIVER_DEFINES];
   const pn_program *program;
   pn_receiver_defines(r->receiver, defines);
-  pn_result result = lookup_program(r->gpu, defines, s->bound, &program);
+  pn_result result = lookup_program(r->gpu, defines, s->kind == SUM_BOUND, &program);
   if (result != PN_OK) return result;
   pn_pass pass = {.color = {target}, .width = r->receiver->desc.width, .height = r->receiver->desc.height};
   result = pn_screen_begin(r->gpu, &pass, program);
@@ -369,12 +372,23 @@ static pn_result draw_bound(const pn_visibility_request *r) {
   pn_texture *soft = &r->pair->work[SSM_BOUND], *image = &r->pair->bound;
   const pn_receiver_map_want *w = &r->pair->seen.want;
   const pn_receiver_desc *view = &r->receiver->desc;
-  scattering s = {.r = r, .bound = true, .soft = soft};
+  scattering s = {.r = r, .kind = SUM_BOUND, .soft = soft};
   pn_result result = pn_texture_shape(r->gpu, soft, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
   if (result == PN_OK) result = pn_texture_shape(r->gpu, image, GL_R32F, view->width, view->height, 0, 1);
   if (result == PN_OK) result = scatter_all(&s);
   if (result == PN_OK) result = look_up(&s, (pn_attachment){image->id, image->target, 0, 0});
   mark(&s, "bound");
+  return result;
+}
+
+/* How many micropatches each texel was asked about. */
+static pn_result draw_counts(const pn_visibility_request *r) {
+  pn_texture *covered = &r->pair->covered;
+  const pn_receiver_map_want *w = &r->pair->seen.want;
+  scattering s = {.r = r, .kind = SUM_COUNT, .soft = covered};
+  pn_result result = pn_texture_shape(r->gpu, covered, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
+  if (result == PN_OK) result = scatter_all(&s);
+  mark(&s, "counts");
   return result;
 }
 
@@ -412,7 +426,9 @@ static pn_result draw(const pn_visibility_request *r) {
   if (result == PN_OK) result = look_up(&s, r->target);
   mark(&s, "visibility");
   if (result == PN_OK) hand_out(&s);
-  return result == PN_OK && r->gpu->debug & PN_DEBUG_BOUND ? draw_bound(r) : result;
+  if (result == PN_OK && r->gpu->debug & PN_DEBUG_SEARCH) result = draw_counts(r);
+  if (result == PN_OK && r->gpu->debug & PN_DEBUG_BOUND) result = draw_bound(r);
+  return result;
 }
 
 const pn_technique_class pn_technique_ssm = {
