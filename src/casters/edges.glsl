@@ -8,7 +8,7 @@ uniform highp sampler2D pn_points;   // the vertices in the light's frame
 uniform highp sampler2D pn_sides;    // 0: no silhouette, 1/2 or 1: on which side the mesh lies
 uniform highp usampler2D pn_rings;   // by vertex: where its edges are listed, how many
 uniform highp usampler2D pn_entries; // an edge, its other end
-uniform highp sampler2D pn_corners;  // of silhouettes, outward normals of the next ones at both ends
+uniform highp sampler2D pn_kept;     // 1 for silhouettes that a technique keeps
 uniform highp ivec4 pn_count;        // entries of the table in hand, 1 for a sun
 uniform highp vec4 pn_cut;           // rectangle: what lies nearer than this is cut off
 

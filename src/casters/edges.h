@@ -47,7 +47,7 @@ typedef struct pn_mesh_edges {
   pn_texture points;                /* of the last instance: positions in the light's frame */
   pn_texture sides;                 /* which edges are silhouettes, and on which side the mesh lies */
   /* a technique's own, filled anew for each instance */
-  pn_texture corners, sums[3], total, list;
+  pn_texture kept, sums[3], total, list;
   pn_buffer arguments;
   bool stale; /* positions changed */
 } pn_mesh_edges;

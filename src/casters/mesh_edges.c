@@ -161,7 +161,7 @@ void pn_mesh_edges_free(pn_gpu *gpu, pn_mesh_edges **edges, bool abandon) {
   pn_mesh_edges *e = *edges;
   if (!e) return;
   pn_texture *all[] = {&e->positions, &e->edges,   &e->rings,   &e->entries, &e->points, &e->sides,
-                       &e->corners,   &e->sums[0], &e->sums[1], &e->sums[2], &e->total,  &e->list};
+                       &e->kept,      &e->sums[0], &e->sums[1], &e->sums[2], &e->total,  &e->list};
   pn_buffer_free(gpu, &e->arguments, abandon);
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) pn_texture_free(gpu, all[i], abandon);
   pn_free(gpu, e);

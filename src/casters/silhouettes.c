@@ -58,7 +58,7 @@ void pn_silhouettes_bind(pn_gpu *gpu, const pn_program *program, const pn_mesh_e
   pn_bind_texture(gpu, PN_UNIT_MASK, GL_TEXTURE_2D, e->sides.id, false);
   pn_bind_texture(gpu, PN_UNIT_WORK, GL_TEXTURE_2D, e->rings.id, false);
   pn_bind_texture(gpu, PN_UNIT_PEEL, GL_TEXTURE_2D, e->entries.id, false);
-  pn_bind_texture(gpu, PN_UNIT_ALPHA, GL_TEXTURE_2D, e->corners.id, false);
+  pn_bind_texture(gpu, PN_UNIT_ALPHA, GL_TEXTURE_2D, e->kept.id, false);
 }
 
 /* A pass over count entries of a table, as wide as they need. */

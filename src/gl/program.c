@@ -194,7 +194,7 @@ static void set_samplers(pn_gpu *gpu, const pn_program *program) {
       {"pn_sides", PN_UNIT_MASK},
       {"pn_rings", PN_UNIT_WORK},
       {"pn_entries", PN_UNIT_PEEL},
-      {"pn_corners", PN_UNIT_ALPHA},
+      {"pn_kept", PN_UNIT_ALPHA},
       {"pn_sums_low", PN_UNIT_WORK},
       {"pn_sums_middle", PN_UNIT_PEEL},
       {"pn_sums_high", PN_UNIT_SEEN},

@@ -117,7 +117,7 @@ static void add_others(void) {
   add_key("", "casters/peel.glsl", "", "");
   add_key(screen, "casters/points.frag.glsl", "", "");
   add_key(screen, "casters/silhouette.frag.glsl", "", "");
-  add_key(screen, "techniques/smoothies/corner.frag.glsl", "", "");
+  add_key(screen, "techniques/smoothies/keep.frag.glsl", "", "");
   add_key(screen, "techniques/smoothies/sum.frag.glsl", "", "PN_FIRST 0\n");
   add_key(screen, "techniques/smoothies/sum.frag.glsl", "", "PN_FIRST 1\n");
   add_key(screen, "techniques/smoothies/count.frag.glsl", "", "");

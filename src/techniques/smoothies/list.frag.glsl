@@ -28,7 +28,7 @@ void main() {
   pn_descend(pn_sums_low, some ? 64 : 0, first, place);
   first *= 64;
   for (int i = 0; i < (some ? 64 : 0); i++, first++) {
-    if (texelFetch(pn_corners, pn_entry(first), 0).x >= pn_no_smoothie) continue;
+    if (texelFetch(pn_kept, pn_entry(first), 0).r < 0.5) continue;
     if (place == 0) break;
     place--;
   }

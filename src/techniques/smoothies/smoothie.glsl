@@ -8,9 +8,6 @@
 uniform highp ivec4 pn_mode; // tile, 1 for sheets and cones
 uniform highp vec4 pn_width; // fixed width in map units; 0: the light's
 
-// The first component of pn_corners where an edge has no smoothie to draw.
-const float pn_no_smoothie = 9.0;
-
 bool pn_fixed() { return pn_width.x > 0.0; }
 // Of a fixed width, cones are the rounded corners that rectangles have too.
 bool pn_cones() { return pn_mode.y != 0 && !pn_fixed(); }

@@ -3,6 +3,7 @@
 // or between them and the mesh.
 #include "shaders/precision.glsl"
 #include "techniques/smoothies/smoothie.glsl"
+#include "techniques/smoothies/corner.glsl"
 
 uniform highp usampler2D pn_list;
 uniform highp usampler2D pn_total;
@@ -76,14 +77,15 @@ void main() {
   pn_shape = vec2(0.0);
   if (uint(gl_VertexID) >= texelFetch(pn_total, ivec2(0), 0).x) return; // where the device cannot count its draws
   int edge = int(texelFetch(pn_list, pn_entry(place), 0).x);
-  vec4 next = texelFetch(pn_corners, pn_entry(edge), 0);
-  vec2 m = index < 9 ? next.xy : next.zw;
-  if (index > 5 && m == vec2(0.0)) return;
   uvec4 v = pn_edge(edge);
   vec3 a = pn_vertex(v.x), b = pn_vertex(v.y);
   vec3 p = pn_edge_end(a, b), q = pn_edge_end(b, a);
   vec2 along = q.xy - p.xy, n = pn_outward(along, pn_side(edge)), x = pn_across(n), unit = normalize(along);
-  if (index < 6) pn_straight(index, p, q, n, x);
-  else if (index < 9) pn_corner(index - 6, p, n, x, m, -unit);
-  else pn_corner(index - 9, q, n, x, m, unit);
+  if (index < 6) {
+    pn_straight(index, p, q, n, x);
+    return;
+  }
+  bool first = index < 9;
+  vec2 back = first ? -unit : unit, m = pn_next_normal(edge, first ? v.x : v.y, -back, n);
+  if (m != vec2(0.0)) pn_corner(index - (first ? 6 : 9), first ? p : q, n, x, m, back);
 }

@@ -16,7 +16,7 @@ static const char *const width_words[] = {"light", NULL};
 static const pn_parameter parameters[COUNT] = {
     [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/smoothies.md",
                 PN_CHOICE, 0, 2, 1, presets},
-    [GEOMETRY] = {"geometry", "", "rectangles along edges and rounded corners, or sheets and cones shaped by the light",
+    [GEOMETRY] = {"geometry", "", "rectangles along edges and rounded kept, or sheets and cones shaped by the light",
                   "Chan and Durand 2003; Haines 2001, Wyman and Hansen 2003", PN_CHOICE, 0, 1, 1, geometries},
     [WIDTH] = {"width", "map units", "how far smoothies reach: by the light's real size, or the same everywhere",
                "Chan and Durand 2003", PN_FLOAT, 0, 100, 0, width_words},
@@ -43,12 +43,12 @@ static pn_result smoothie_program(pn_gpu *gpu, const pn_program **out) {
   return pn_program_get(gpu, &key, out);
 }
 
-typedef enum { CORNER_PASS, FIRST_SUM_PASS, SUM_PASS, COUNT_PASS, LIST_PASS, PASS_COUNT } table_pass;
+typedef enum { KEEP_PASS, FIRST_SUM_PASS, SUM_PASS, COUNT_PASS, LIST_PASS, PASS_COUNT } table_pass;
 
 static pn_result table_program(pn_gpu *gpu, table_pass pass, const pn_program **out) {
   static const struct {
     const char *fragment, *defines;
-  } passes[PASS_COUNT] = {{"techniques/smoothies/corner.frag.glsl", ""},
+  } passes[PASS_COUNT] = {{"techniques/smoothies/keep.frag.glsl", ""},
                           {"techniques/smoothies/sum.frag.glsl", "PN_FIRST 1\n"},
                           {"techniques/smoothies/sum.frag.glsl", "PN_FIRST 0\n"},
                           {"techniques/smoothies/count.frag.glsl", ""},
@@ -72,7 +72,7 @@ static size_t summed(size_t count) { return (count + SUMMED - 1) / SUMMED; }
 static pn_result shape_tables(pn_gpu *gpu, pn_mesh_edges *e) {
   int rows = e->edges.height;
   size_t count = e->count;
-  pn_result result = pn_texture_shape(gpu, &e->corners, GL_RGBA32F, PN_EDGE_ROW, rows, 0, 1);
+  pn_result result = pn_texture_shape(gpu, &e->kept, GL_R8, PN_EDGE_ROW, rows, 0, 1);
   if (result == PN_OK) result = pn_texture_shape(gpu, &e->list, GL_RG32UI, PN_EDGE_ROW, rows, 0, 1);
   if (result == PN_OK) result = pn_texture_shape(gpu, &e->total, GL_RGBA32UI, 1, 1, 0, 1);
   for (int i = 0; i < LEVELS && result == PN_OK; i++) {
@@ -112,10 +112,10 @@ static void draw_table(pn_gpu *gpu, int unit, const pn_texture *from) {
   pn_draw_screen(gpu);
 }
 
-static pn_result find_corners(const drawing *d, const pn_mesh_edges *e) {
+static pn_result keep_seen(const drawing *d, const pn_mesh_edges *e) {
   pn_gpu *gpu = d->request->gpu;
   GLint counts[4] = {(GLint)e->count, d->request->frame->sun};
-  pn_result result = begin_table(d, e, CORNER_PASS, &e->corners, e->count, counts);
+  pn_result result = begin_table(d, e, KEEP_PASS, &e->kept, e->count, counts);
   if (result != PN_OK) return result;
   pn_bind_texture(gpu, PN_UNIT_MAPS, GL_TEXTURE_2D_ARRAY, d->request->maps->depth.id, false);
   draw_table(gpu, PN_UNIT_ALPHA, NULL); /* no pass may have the image bound that it draws to */
@@ -188,7 +188,7 @@ static pn_result draw_mesh(void *user, pn_mesh_data *mesh, const pn_matrix *scen
   pn_matrix light_from_object = pn_matrix_multiply(&d->light_from_scene, scene_from_object);
   result = pn_silhouettes_draw(r->gpu, edges, &light_from_object, r->frame->sun, d->cut);
   if (result == PN_OK) result = shape_tables(r->gpu, edges);
-  if (result == PN_OK) result = find_corners(d, edges);
+  if (result == PN_OK) result = keep_seen(d, edges);
   if (result == PN_OK) result = add_sums(d, edges);
   if (result == PN_OK) result = make_list(d, edges);
   for (int tile = 0; tile < r->maps->fit.tiles && result == PN_OK; tile++) result = draw_tile(d, edges, tile);
