@@ -28,7 +28,7 @@ static const pn_parameter parameters[COUNT] = {
     [MERGE] =
         {"merge", "%",
          "blocks are one micropatch where that moves no edge by more than this part of the light; 0 = every texel",
-         "Soft Shadow Maps, section 7", PN_FLOAT, 0, 50, 1, NULL},
+         "Soft Shadow Maps, section 7", PN_FLOAT, 0, 50, 5, NULL},
     [SIZE] = {"size", "texels", "soft shadow map of N x N; 0 = as the occluder map", "Soft Shadow Maps, section 5.2.3",
               PN_INT, 0, PN_MAP_SIZE_MAX, 0, NULL},
     [LAYERS] = {"layers", "", "receivers told apart behind one another, as the light sees them",
@@ -39,12 +39,12 @@ static void preset(int choice, double *values) {
   for (int i = 0; i < COUNT; i++) values[i] = parameters[i].initial;
   values[PRESET] = choice;
   if (choice == 0) { /* fast */
-    values[MERGE] = 3;
+    values[MERGE] = 10;
     values[SIZE] = 256;
     values[LAYERS] = 3;
   }
   if (choice == 2) { /* exact */
-    values[MERGE] = 0.25;
+    values[MERGE] = 1;
     values[LAYERS] = 6;
   }
 }
