@@ -1,5 +1,6 @@
 #include "gl/target.h"
 
+#include <stdint.h>
 #include <string.h>
 
 #include "gl/state.h"
@@ -267,22 +268,28 @@ void pn_read_from(pn_gpu *gpu, const pn_texture *texture, int level, int layer) 
   GL(gpu, ReadBuffer)(GL_COLOR_ATTACHMENT0);
 }
 
-pn_result pn_draw_counted(pn_gpu *gpu, const pn_texture *arguments, pn_buffer *buffer, int most) {
-  enum { BYTES = 16 }; /* four unsigned integers: GL's DrawArraysIndirectCommand */
+enum { ARGUMENT_BYTES = 16 }; /* four unsigned integers: GL's DrawArraysIndirectCommand */
+
+pn_result pn_counts_take(pn_gpu *gpu, const pn_texture *arguments, pn_buffer *buffer) {
+  if (!gpu->can.indirect) return PN_OK;
+  size_t bytes = ARGUMENT_BYTES * (size_t)arguments->width;
+  bool fresh = !buffer->id;
+  pn_result result = buffer_make(gpu, buffer, bytes);
+  if (result != PN_OK) return result;
+  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, buffer->id);
+  if (fresh) GL(gpu, BufferData)(GL_PIXEL_PACK_BUFFER, (GLsizeiptr)bytes, NULL, GL_STREAM_DRAW);
+  pn_read_from(gpu, arguments, 0, 0);
+  GL(gpu, ReadPixels)(0, 0, arguments->width, 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT, NULL);
+  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
+  return PN_OK;
+}
+
+void pn_draw_counted(pn_gpu *gpu, const pn_buffer *buffer, int index, int most) {
   GL(gpu, BindVertexArray)(gpu->vertex_array);
   if (!gpu->can.indirect) {
     GL(gpu, DrawArrays)(GL_TRIANGLES, 0, most);
-    return PN_OK;
+    return;
   }
-  bool fresh = !buffer->id;
-  pn_result result = buffer_make(gpu, buffer, BYTES);
-  if (result != PN_OK) return result;
-  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, buffer->id);
-  if (fresh) GL(gpu, BufferData)(GL_PIXEL_PACK_BUFFER, BYTES, NULL, GL_STREAM_DRAW);
-  pn_read_from(gpu, arguments, 0, 0);
-  GL(gpu, ReadPixels)(0, 0, 1, 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT, NULL);
-  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
   GL(gpu, BindBuffer)(GL_DRAW_INDIRECT_BUFFER, buffer->id);
-  GL(gpu, DrawArraysIndirect)(GL_TRIANGLES, NULL);
-  return PN_OK;
+  GL(gpu, DrawArraysIndirect)(GL_TRIANGLES, (const void *)(uintptr_t)(ARGUMENT_BYTES * index));
 }

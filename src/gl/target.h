@@ -68,11 +68,13 @@ void pn_fill(pn_gpu *gpu, int width, int height, float value);
 /* pn_pass_begin, the program in use: the usual start of a full-screen pass. */
 pn_result pn_screen_begin(pn_gpu *gpu, const pn_pass *pass, const pn_program *program);
 
-/* Draws triangles from gl_VertexID alone, as many vertices as a texel says that the GPU itself wrote: arguments is a
- * 1 x 1 RGBA32UI texture with (count, 1, 0, 0), buffer receives them. Nothing is read back. Where the device has no
- * indirect draws, most vertices are drawn, and the vertex shader has to put those past the count out of sight. */
+/* Draws triangles from gl_VertexID alone, as many vertices as a texel says that the GPU itself wrote: arguments is an
+ * RGBA32UI texture one texel high, each of its texels (count, 1, 0, 0). pn_counts_take copies them into a buffer, and
+ * pn_draw_counted draws as texel index says. Nothing is read back. Where the device has no indirect draws, most vertices
+ * are drawn, and the shaders have to put what is past the count out of sight. */
 typedef struct pn_buffer pn_buffer;
-pn_result pn_draw_counted(pn_gpu *gpu, const pn_texture *arguments, pn_buffer *buffer, int most);
+pn_result pn_counts_take(pn_gpu *gpu, const pn_texture *arguments, pn_buffer *buffer);
+void pn_draw_counted(pn_gpu *gpu, const pn_buffer *buffer, int index, int most);
 
 /* A uniform buffer of the library's, updated whole. */
 struct pn_buffer {

@@ -111,7 +111,7 @@ static void add_others(void) {
     add_key("techniques/ssm/patch.vert.glsl", "techniques/ssm/patch.frag.glsl", "", defines);
   }
   add_key("techniques/ssm/patch.vert.glsl", "techniques/ssm/patch.frag.glsl", "", "PN_SUM 2\n");
-  add_key(screen, "techniques/ssm/list.frag.glsl", "", "");
+  add_key("techniques/ssm/list.vert.glsl", "techniques/ssm/list.frag.glsl", "", "");
   add_key(screen, "techniques/ssm/arguments.frag.glsl", "", "");
   add_key(screen, "techniques/ssm/add.frag.glsl", "", "");
   add_key("", "casters/peel.glsl", "", "");

@@ -8,7 +8,8 @@ static pn_result pass_program(pn_gpu *gpu, pass_kind kind, const pn_program **ou
   static const char *const fragments[] = {"techniques/ssm/nodes.frag.glsl", "techniques/ssm/nodes.frag.glsl",
                                           "techniques/ssm/list.frag.glsl", "techniques/ssm/arguments.frag.glsl"};
   static const char *const defines[] = {"PN_FIRST 1\n", "PN_FIRST 0\n", "", ""};
-  pn_program_key key = {"shaders/screen.vert.glsl", fragments[kind], NULL, defines[kind]};
+  const char *vertex = kind == PASS_LIST ? "techniques/ssm/list.vert.glsl" : "shaders/screen.vert.glsl";
+  pn_program_key key = {vertex, fragments[kind], NULL, defines[kind]};
   return pn_program_get(gpu, &key, out);
 }
 
@@ -40,7 +41,7 @@ pn_result ssm_gpu_shape(const pn_visibility_request *r) {
       pn_texture_shape(r->gpu, &work[SSM_COUNTS], GL_RGBA32UI, range->width, range->height, 0, range->levels);
   for (int i = SSM_LIST; i <= SSM_LIMITS && result == PN_OK; i++)
     result = pn_texture_shape(r->gpu, &work[i], GL_RGBA32F, width, height, 0, 1);
-  return result == PN_OK ? pn_texture_shape(r->gpu, &work[SSM_ARGUMENTS], GL_RGBA32UI, 1, 1, 0, 1) : result;
+  return result == PN_OK ? pn_texture_shape(r->gpu, &work[SSM_ARGUMENTS], GL_RGBA32UI, SSM_DRAWS, 1, 0, 1) : result;
 }
 
 /* ---- passes ------------------------------------------------------------------------------------------------------ */
@@ -105,11 +106,11 @@ static pn_result draw_list(const ssm_list *list) {
                   .height = entries->height};
   result = pn_screen_begin(r->gpu, &pass, program);
   if (result != PN_OK) return result;
-  GLint place[4] = {list->first, entries->width, 0, 0};
+  GLint place[4] = {list->first, entries->width, entries->height, 0};
   GL(r->gpu, Uniform4iv)(pn_uniform(program, "pn_place"), 1, place);
   bind_nodes(list, program, 0);
   bind_counts(r->gpu, &r->pair->work[SSM_COUNTS], 0, r->pair->work[SSM_COUNTS].levels - 1);
-  pn_draw_screen(r->gpu);
+  pn_draw_counted(r->gpu, &r->pair->arguments, SSM_DRAW_ROWS, 6 * entries->height);
   return PN_OK;
 }
 
@@ -119,19 +120,19 @@ static pn_result draw_arguments(const ssm_list *list) {
   const pn_program *program;
   pn_result result = pass_program(r->gpu, PASS_ARGUMENTS, &program);
   if (result != PN_OK) return result;
-  pn_pass pass = {.color = {{arguments->id, arguments->target, 0, 0}}, .width = 1, .height = 1};
+  pn_pass pass = {.color = {{arguments->id, arguments->target, 0, 0}}, .width = SSM_DRAWS, .height = 1};
   result = pn_screen_begin(r->gpu, &pass, program);
   if (result != PN_OK) return result;
-  GLint place[4] = {list->first, ssm_list_size(r->maps), counts->levels - 1, 0};
+  GLint place[4] = {list->first, ssm_list_size(r->maps), counts->levels - 1, r->pair->work[SSM_LIST].width};
   GL(r->gpu, Uniform4iv)(pn_uniform(program, "pn_place"), 1, place);
   bind_counts(r->gpu, counts, 0, counts->levels - 1);
   pn_draw_screen(r->gpu);
-  return PN_OK;
+  return pn_counts_take(r->gpu, arguments, &r->pair->arguments);
 }
 
 pn_result ssm_gpu_list(const ssm_list *list) {
-  pn_result result = draw_list(list);
-  return result == PN_OK ? draw_arguments(list) : result;
+  pn_result result = draw_arguments(list);
+  return result == PN_OK ? draw_list(list) : result;
 }
 
 pn_result ssm_gpu_total(const ssm_list *list, int *out) {

@@ -3,7 +3,7 @@
 #include "techniques/ssm/node.glsl"
 
 uniform highp usampler2D pn_work; // the pyramid of counts
-uniform ivec4 pn_place;           // first entry of this list, its width
+uniform ivec4 pn_place;           // first entry of this list, its width, its height
 layout(location = 0) out vec4 pn_out;
 layout(location = 1) out vec4 pn_limits;
 

@@ -42,6 +42,7 @@ pn_Patch pn_node(ivec2 at, int level) {
 void pn_node_reach(inout pn_Patch p) {
   ivec2 size = pn_levels.zw;
   float farthest = texelFetch(pn_seen_range, ivec3(0, 0, pn_source.z), pn_levels.y - 1).g;
+  p.drawn = p.drawn && farthest < 1e29; // some receiver is in this layer
   vec2 seen = vec2(p.most, max(farthest, p.above));
   for (int i = 0; i < 2 && p.drawn; i++) {
     vec2 reach = pn_penumbra_extent(pn_extent(0), p.w, seen.y);

@@ -228,8 +228,8 @@ static pn_result draw_list(scattering *s, const ssm_list *list, int total) {
   if (total >= 0 && by_batches(s)) return draw_batches(s, list, total, left < size ? left : size);
   if (total >= 0) return draw_entries(s, list, s->target, false, (entry_range){0, 1, left < size ? left : size});
   pn_result result = begin_patches(s, list, s->target, false, 0, 1);
-  return result == PN_OK ? pn_draw_counted(r->gpu, &r->pair->work[SSM_ARGUMENTS], &r->pair->arguments, 6 * size)
-                         : result;
+  if (result == PN_OK) pn_draw_counted(r->gpu, &r->pair->arguments, SSM_DRAW_PATCHES, 6 * size);
+  return result;
 }
 
 static void mark(const scattering *s, const char *stage) {

@@ -8,6 +8,9 @@
 enum { SSM_COUNTS, SSM_LIST, SSM_LIMITS, SSM_ARGUMENTS, SSM_BATCH, SSM_SUM, SSM_SOFT = SSM_SUM + 2, SSM_BOUND };
 _Static_assert((int)SSM_BOUND < (int)PN_WORK_MAX, "the pair has a place for every texture");
 
+/* What the GPU counts: vertices of a list's micropatches, and of the rows of its texture. */
+enum { SSM_DRAW_PATCHES, SSM_DRAW_ROWS, SSM_DRAWS };
+
 /* Entries of a list: more micropatches are drawn by several lists, one after the other. */
 enum { SSM_LIST_WIDTH = 1024, SSM_LIST_MOST = 1024 * 1024 };
 
