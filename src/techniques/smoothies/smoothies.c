@@ -122,7 +122,7 @@ static pn_result keep_seen(const drawing *d, const pn_mesh_edges *e) {
   return PN_OK;
 }
 
-static pn_result add_sums(const drawing *d, const pn_mesh_edges *e) {
+static pn_result add_sums(const drawing *d, pn_mesh_edges *e) {
   pn_gpu *gpu = d->request->gpu;
   size_t count = e->count;
   pn_result result = PN_OK;
@@ -134,8 +134,9 @@ static pn_result add_sums(const drawing *d, const pn_mesh_edges *e) {
   }
   GLint counts[4] = {(GLint)count};
   if (result == PN_OK) result = begin_table(d, e, COUNT_PASS, &e->total, 1, counts);
-  if (result == PN_OK) draw_table(gpu, PN_UNIT_WORK, &e->sums[LEVELS - 1]);
-  return result;
+  if (result != PN_OK) return result;
+  draw_table(gpu, PN_UNIT_WORK, &e->sums[LEVELS - 1]);
+  return pn_counts_take(gpu, &e->total, &e->arguments);
 }
 
 static pn_result make_list(const drawing *d, const pn_mesh_edges *e) {
@@ -176,7 +177,8 @@ static pn_result draw_tile(const drawing *d, pn_mesh_edges *e, int tile) {
   pn_bind_texture(r->gpu, PN_UNIT_MAPS, GL_TEXTURE_2D_ARRAY, 0, false);
   pn_bind_texture(r->gpu, PN_UNIT_SEEN, GL_TEXTURE_2D, e->list.id, false);
   pn_bind_texture(r->gpu, PN_UNIT_RANGE, GL_TEXTURE_2D, e->total.id, false);
-  return pn_draw_counted(r->gpu, &e->total, &e->arguments, (int)(12 * e->count));
+  pn_draw_counted(r->gpu, &e->arguments, 0, (int)(12 * e->count));
+  return PN_OK;
 }
 
 static pn_result draw_mesh(void *user, pn_mesh_data *mesh, const pn_matrix *scene_from_object) {
