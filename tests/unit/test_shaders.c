@@ -105,13 +105,16 @@ static void add_others(void) {
     add_key(screen, "techniques/ssm/lookup.frag.glsl", "", defines);
   }
   for (int i = 0; i < 2; i++) {
-    snprintf(defines, sizeof defines, "PN_FIRST %d\n", i);
-    add_key(screen, "techniques/ssm/nodes.frag.glsl", "", defines);
+    for (int first = 0; first < 2; first++) {
+      snprintf(defines, sizeof defines, "PN_FIRST %d\nPN_TILES %d\n", first, i);
+      add_key(screen, "techniques/ssm/nodes.frag.glsl", "", defines);
+    }
+    snprintf(defines, sizeof defines, "PN_TILES %d\n", i);
+    add_key("techniques/ssm/list.vert.glsl", "techniques/ssm/list.frag.glsl", "", defines);
     snprintf(defines, sizeof defines, "PN_SUM %d\n", i);
     add_key("techniques/ssm/patch.vert.glsl", "techniques/ssm/patch.frag.glsl", "", defines);
   }
   add_key("techniques/ssm/patch.vert.glsl", "techniques/ssm/patch.frag.glsl", "", "PN_SUM 2\n");
-  add_key("techniques/ssm/list.vert.glsl", "techniques/ssm/list.frag.glsl", "", "");
   add_key(screen, "techniques/ssm/arguments.frag.glsl", "", "");
   add_key(screen, "techniques/ssm/add.frag.glsl", "", "");
   add_key("", "casters/peel.glsl", "", "");

@@ -67,7 +67,7 @@ static int gpu_total(scene *c, pn_pair *pair) {
   (void)c;
   glBindTexture(GL_TEXTURE_2D, t->id);
   glGetTexImage(GL_TEXTURE_2D, t->levels - 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT, top);
-  return (int)top[0];
+  return (int)(top[0] & 0x7fffffffu);
 }
 
 /* The same patches in the same order. What they serve follows from float arithmetic that two compilers may order

@@ -4,20 +4,25 @@
 
 typedef enum { PASS_FIRST, PASS_LEVEL, PASS_LIST, PASS_ARGUMENTS } pass_kind;
 
-static pn_result pass_program(pn_gpu *gpu, pass_kind kind, const pn_program **out) {
+static pn_result pass_program(pn_gpu *gpu, pass_kind kind, bool tiles, const pn_program **out) {
   static const char *const fragments[] = {"techniques/ssm/nodes.frag.glsl", "techniques/ssm/nodes.frag.glsl",
                                           "techniques/ssm/list.frag.glsl", "techniques/ssm/arguments.frag.glsl"};
-  static const char *const defines[] = {"PN_FIRST 1\n", "PN_FIRST 0\n", "", ""};
+  static const char *const defines[][2] = {{"PN_FIRST 1\nPN_TILES 0\n", "PN_FIRST 1\nPN_TILES 1\n"},
+                                           {"PN_FIRST 0\nPN_TILES 0\n", "PN_FIRST 0\nPN_TILES 1\n"},
+                                           {"PN_TILES 0\n", "PN_TILES 1\n"},
+                                           {"", ""}};
   const char *vertex = kind == PASS_LIST ? "techniques/ssm/list.vert.glsl" : "shaders/screen.vert.glsl";
-  pn_program_key key = {vertex, fragments[kind], NULL, defines[kind]};
+  pn_program_key key = {vertex, fragments[kind], NULL, defines[kind][tiles]};
   return pn_program_get(gpu, &key, out);
 }
+
+static bool has_tiles(const ssm_list *list) { return list->request->maps->fit.tiles > 1; }
 
 pn_result ssm_gpu_prepare(pn_gpu *gpu) {
   const pn_program *program;
   pn_result result = PN_OK;
   for (int kind = PASS_FIRST; kind <= PASS_ARGUMENTS && result == PN_OK; kind++)
-    result = pass_program(gpu, (pass_kind)kind, &program);
+    result = pass_program(gpu, (pass_kind)kind, false, &program);
   return result;
 }
 
@@ -38,7 +43,7 @@ pn_result ssm_gpu_shape(const pn_visibility_request *r) {
   int size = ssm_list_size(r->maps), width = (int)least((size_t)size, SSM_LIST_WIDTH);
   int height = (size + width - 1) / width;
   pn_result result =
-      pn_texture_shape(r->gpu, &work[SSM_COUNTS], GL_RGBA32UI, range->width, range->height, 0, range->levels);
+      pn_texture_shape(r->gpu, &work[SSM_COUNTS], GL_R32UI, range->width, range->height, 0, range->levels);
   for (int i = SSM_LIST; i <= SSM_LIMITS && result == PN_OK; i++)
     result = pn_texture_shape(r->gpu, &work[i], GL_RGBA32F, width, height, 0, 1);
   return result == PN_OK ? pn_texture_shape(r->gpu, &work[SSM_ARGUMENTS], GL_RGBA32UI, SSM_DRAWS, 1, 0, 1) : result;
@@ -74,13 +79,15 @@ static pn_result count_level(const ssm_list *list, int level) {
   pn_gpu *gpu = list->request->gpu;
   const pn_texture *counts = &list->request->pair->work[SSM_COUNTS];
   const pn_program *program;
-  pn_result result = pass_program(gpu, level ? PASS_LEVEL : PASS_FIRST, &program);
+  pn_result result = pass_program(gpu, level ? PASS_LEVEL : PASS_FIRST, has_tiles(list), &program);
   if (result != PN_OK) return result;
   pn_pass pass = {.color = {{counts->id, counts->target, level, 0}},
                   .width = shifted(counts->width, level),
                   .height = shifted(counts->height, level)};
   result = pn_screen_begin(gpu, &pass, program);
   if (result != PN_OK) return result;
+  static const GLuint nothing[4] = {0, 0, 0, 0};
+  GL(gpu, ClearBufferuiv)(GL_COLOR, 0, nothing);
   bind_nodes(list, program, level);
   if (level) bind_counts(gpu, counts, level - 1, level - 1);
   pn_draw_screen(gpu);
@@ -99,7 +106,7 @@ static pn_result draw_list(const ssm_list *list) {
   const pn_visibility_request *r = list->request;
   const pn_texture *entries = &r->pair->work[SSM_LIST], *limits = &r->pair->work[SSM_LIMITS];
   const pn_program *program;
-  pn_result result = pass_program(r->gpu, PASS_LIST, &program);
+  pn_result result = pass_program(r->gpu, PASS_LIST, has_tiles(list), &program);
   if (result != PN_OK) return result;
   pn_pass pass = {.color = {{entries->id, entries->target, 0, 0}, {limits->id, limits->target, 0, 0}},
                   .width = entries->width,
@@ -118,7 +125,7 @@ static pn_result draw_arguments(const ssm_list *list) {
   const pn_visibility_request *r = list->request;
   const pn_texture *arguments = &r->pair->work[SSM_ARGUMENTS], *counts = &r->pair->work[SSM_COUNTS];
   const pn_program *program;
-  pn_result result = pass_program(r->gpu, PASS_ARGUMENTS, &program);
+  pn_result result = pass_program(r->gpu, PASS_ARGUMENTS, false, &program);
   if (result != PN_OK) return result;
   pn_pass pass = {.color = {{arguments->id, arguments->target, 0, 0}}, .width = SSM_DRAWS, .height = 1};
   result = pn_screen_begin(r->gpu, &pass, program);
@@ -142,6 +149,6 @@ pn_result ssm_gpu_total(const ssm_list *list, int *out) {
   pn_read_from(gpu, counts, counts->levels - 1, 0);
   GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
   GL(gpu, ReadPixels)(0, 0, 1, 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT, top);
-  *out = (int)top[0];
+  *out = (int)(top[0] & 0x7fffffffu); /* the highest bit: whether the top node is one itself */
   return PN_OK;
 }

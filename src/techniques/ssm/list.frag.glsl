@@ -14,7 +14,7 @@ ivec2 pn_child(ivec2 at, int level, inout uint k) {
   bool found = false;
   for (int c = 0; c < 4; c++) {
     ivec2 candidate = 2 * at + ivec2(c & 1, c >> 1);
-    uint count = texelFetch(pn_work, min(candidate, last), level).r;
+    uint count = pn_count(texelFetch(pn_work, min(candidate, last), level).r);
     count = any(greaterThan(candidate, last)) ? 0u : count;
     bool here = !found && k < count;
     child = here ? candidate : child;
@@ -30,11 +30,11 @@ void main() {
   ivec2 at = ivec2(0);
   pn_out = vec4(0.0);
   pn_limits = vec4(0.0);
-  int found = k < texelFetch(pn_work, at, level).r ? 1 : 0;
+  int found = k < pn_count(texelFetch(pn_work, at, level).r) ? 1 : 0;
   // Selections instead of jumps: pixels of one loop go down to different levels.
   bool down = true;
   for (int i = 1; i < pn_levels.x * found; i++) {
-    uint own = texelFetch(pn_work, at, level).g;
+    uint own = pn_own(texelFetch(pn_work, at, level).r);
     down = down && k >= own;
     if (down) {
       k -= own;
@@ -45,8 +45,9 @@ void main() {
   // A loop, not a condition: software GL runs through both sides of a condition, but not through a loop of no turns.
   for (int i = 0; i < found; i++) {
     pn_Patch p = pn_node(at, level);
+    pn_node_reach(p);
     float scale = float(1 << level);
     pn_out = vec4(vec2(at) * scale, scale, p.w);
-    pn_limits = vec4(p.most, p.above, uintBitsToFloat(texelFetch(pn_work, at, level).b), 1.0);
+    pn_limits = vec4(p.most, p.above, p.least, 1.0);
   }
 }

@@ -1,4 +1,5 @@
 // One node of an occluder map's range pyramid as a micropatch.
+//   PN_TILES  the light has several maps
 #include "techniques/ssm/patches.glsl"
 
 uniform highp sampler2DArray pn_range;      // of the occluder maps
@@ -9,9 +10,12 @@ uniform vec4 pn_share;                      // how far merging may move an edge,
 
 // With several maps the light's tiles overlap by their borders: a node belongs to the map its corners lie in.
 bool pn_node_owned(vec4 texels) {
-  if (pn_map_count(0) == 1) return true;
+#if !PN_TILES
+  return true;
+#else
   return pn_map_at(0, pn_map_st(0, pn_source.w, texels.xy + 0.5)) == pn_source.w &&
          pn_map_at(0, pn_map_st(0, pn_source.w, texels.zw - 0.5)) == pn_source.w;
+#endif
 }
 
 // The limit of a node that may be a patch at all; nothing lies below the others'.
@@ -38,12 +42,18 @@ pn_Patch pn_node(ivec2 at, int level) {
   return p;
 }
 
+// A node's texel: how many micropatches there are in and below it, and whether it is one, in the highest bit.
+uint pn_counts(uint count, uint own) { return count | own << 31; }
+uint pn_count(uint counts) { return counts & 0x7fffffffu; }
+uint pn_own(uint counts) { return counts >> 31; }
+
+// w of the farthest receiver in the layer; 1e30 where there is none.
+float pn_farthest_seen() { return texelFetch(pn_seen_range, ivec3(0, 0, pn_source.z), pn_levels.y - 1).g; }
+
 // Which receivers it reaches: first out to the farthest there is, then to the farthest one found on the way.
 void pn_node_reach(inout pn_Patch p) {
   ivec2 size = pn_levels.zw;
-  float farthest = texelFetch(pn_seen_range, ivec3(0, 0, pn_source.z), pn_levels.y - 1).g;
-  p.drawn = p.drawn && farthest < 1e29; // some receiver is in this layer
-  vec2 seen = vec2(p.most, max(farthest, p.above));
+  vec2 seen = vec2(p.most, max(pn_farthest_seen(), p.above));
   for (int i = 0; i < 2 && p.drawn; i++) {
     vec2 reach = pn_penumbra_extent(pn_extent(0), p.w, seen.y);
     seen = pn_seen_between(pn_seen_range, pn_source.z, p.rectangle.xy - reach, p.rectangle.zw + reach, size, pn_levels.y);

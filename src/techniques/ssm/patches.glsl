@@ -27,8 +27,8 @@ struct pn_Patch {
 vec2 pn_seen_between(highp sampler2DArray seen_range, int layer, vec2 low, vec2 high, ivec2 size, int levels) {
   ivec2 a = clamp(ivec2(floor(pn_seen_texel(low))), ivec2(0), size - 1);
   ivec2 b = clamp(ivec2(floor(pn_seen_texel(high))), ivec2(0), size - 1);
-  // As many bits as the extent has; half a unit more keeps powers of two off the rounding of the logarithm.
-  int level = min(int(floor(log2(float(max(b.x - a.x, b.y - a.y)) + 0.5))) + 1, levels - 1);
+  // As many bits as the extent has: one more than the float's exponent; none for 0, whose exponent is below all.
+  int level = clamp((floatBitsToInt(float(max(b.x - a.x, b.y - a.y))) >> 23) - 126, 0, levels - 1);
   a >>= level;
   b >>= level;
   vec2 r = texelFetch(seen_range, ivec3(a, layer), level).rg;
