@@ -73,7 +73,7 @@ static pn_result shape_tables(pn_gpu *gpu, pn_mesh_edges *e) {
   int rows = e->edges.height;
   size_t count = e->count;
   pn_result result = pn_texture_shape(gpu, &e->kept, GL_R8, PN_EDGE_ROW, rows, 0, 1);
-  if (result == PN_OK) result = pn_texture_shape(gpu, &e->list, GL_RG32UI, PN_EDGE_ROW, rows, 0, 1);
+  if (result == PN_OK) result = pn_texture_shape(gpu, &e->list, GL_R32UI, PN_EDGE_ROW, rows, 0, 1);
   if (result == PN_OK) result = pn_texture_shape(gpu, &e->total, GL_RGBA32UI, 1, 1, 0, 1);
   for (int i = 0; i < LEVELS && result == PN_OK; i++) {
     count = summed(count);
