@@ -14,8 +14,8 @@ float pn_smoothie(int light, highp sampler2DArray smoothies, int map, ivec2 texe
   return reciprocal > 0.0 ? 1.0 / reciprocal : 1e30;
 }
 
-// The receiver's tangent plane around it in the map: w there is plane.z + plane.xy . (st - st_R), nearer to the light by
-// the errors that it may have within a texel.
+// The receiver's tangent plane around it in the map: w there is plane.z + plane.xy . (st - st_R), nearer to the light
+// by the errors that it may have within a texel.
 vec3 pn_plane(int light, pn_Receiver r) {
   vec2 slope = r.n.xy / r.k, texel = 1.0 / pn_lights[light].map_bounds[0].zw;
   float lever = texel.x + texel.y + r.reach * dot(abs(slope), texel);
