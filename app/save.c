@@ -80,3 +80,9 @@ char *save_name(int index, const char *spec) {
   free(label);
   return name;
 }
+
+char *save_name_inside(const char *file, const char *kind) {
+  char *name = NULL;
+  int stem = (int)(strlen(file) - strlen(".exr"));
+  return asprintf(&name, "%.*s.%s.exr", stem, file, kind) < 0 ? NULL : name;
+}

@@ -31,5 +31,7 @@ int save_view(const struct save *save, const struct view *view);
 
 /* "NN-LABEL.exr" of the technique with this index; malloc'ed; NULL: out of memory. */
 char *save_name(int index, const char *spec);
+/* "NN-LABEL.KIND.exr" beside it. */
+char *save_name_inside(const char *file, const char *kind);
 
 #endif

@@ -47,22 +47,13 @@ static size_t pixel_count(const struct comparison *c) { return (size_t)c->view->
 
 /* ---- before the work: what can be wrong with the request --------------------------------------------------------- */
 
-/* "NN-LABEL.KIND.exr"; malloc'ed; NULL: out of memory. */
-static char *inside_name(const struct entry *e, const char *kind) {
-  int stem = (int)(strlen(e->file) - strlen(".exr"));
-  size_t size = strlen(e->file) + strlen(kind) + 2;
-  char *name = malloc(size);
-  if (name) snprintf(name, size, "%.*s.%s.exr", stem, e->file, kind);
-  return name;
-}
-
 static const char *const inside_kinds[] = {"search", "ssm", "bound"};
 enum { INSIDE_KINDS = sizeof inside_kinds / sizeof *inside_kinds };
 
 static int claim_insides(struct claims *claims, const char *folder, const struct entry *e) {
   int status = STATUS_OK;
   for (int i = 0; i < INSIDE_KINDS && !status; i++) {
-    char *name = inside_name(e, inside_kinds[i]);
+    char *name = save_name_inside(e->file, inside_kinds[i]);
     status = name ? claim_saved(claims, folder, name) : memory_error();
     free(name);
   }
@@ -323,7 +314,7 @@ static int save_insides(const struct save *save, const struct entry *e) {
   int status = STATUS_OK;
   for (int i = 0; i < INSIDE_KINDS && !status; i++) {
     if (!there[i]) continue;
-    char *name = inside_name(e, inside_kinds[i]);
+    char *name = save_name_inside(e->file, inside_kinds[i]);
     status = name ? savers[i](save, name, in) : memory_error();
     free(name);
   }

@@ -24,8 +24,11 @@ static int claim_buffers(const struct options *o, struct claims *claims) {
   int status = STATUS_OK;
   for (int i = 0; o->save_dir && !status && (i < o->technique_count || i == 0); i++) {
     char *name = save_name(i, o->technique_count ? o->techniques[i] : default_technique);
-    status = name ? claim_saved(claims, o->save_dir, name) : memory_error();
+    char *soft = name ? save_name_inside(name, "ssm") : NULL;
+    status = soft ? claim_saved(claims, o->save_dir, name) : memory_error();
+    if (!status) status = claim_saved(claims, o->save_dir, soft);
     free(name);
+    free(soft);
   }
   return status;
 }
@@ -74,11 +77,23 @@ struct drawing {
   FILE *people;
 };
 
+static int save_soft(const struct drawing *d, const struct save *save, int index, const char *name) {
+  struct insides insides = {0};
+  char *soft = name ? save_name_inside(name, "ssm") : NULL;
+  int status = soft ? client_insides(d->host->client, d->pictures[index].light, 0, &insides) : memory_error();
+  if (!status && insides.soft)
+    status = save_layers(save, soft, insides.soft_width, insides.soft_height, insides.soft_layers, insides.soft);
+  insides_free(&insides);
+  free(soft);
+  return status;
+}
+
 static int save_visibility(const struct drawing *d, int index) {
   const struct save save = {d->options->save_dir, d->people, d->view->width, d->view->height};
   int status = index == 0 ? save_view(&save, d->view) : STATUS_OK;
   char *name = save_name(index, d->pictures[index].spec);
   if (!status) status = name ? save_scalars(&save, name, d->visibility) : memory_error();
+  if (!status) status = save_soft(d, &save, index, name);
   free(name);
   return status;
 }
