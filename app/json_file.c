@@ -44,6 +44,7 @@ void add_technique(cJSON *result, const char *spec) {
     const pn_parameter *p = &technique->parameters[i];
     if (p->type == PN_CHOICE) cJSON_AddStringToObject(object, p->name, p->choices[(int)values[i]]);
     else if (p->type == PN_BOOL) cJSON_AddBoolToObject(object, p->name, values[i] != 0);
+    else if (p->choices && values[i] == p->least) cJSON_AddStringToObject(object, p->name, p->choices[0]);
     else cJSON_AddNumberToObject(object, p->name, values[i]);
   }
 }

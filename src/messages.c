@@ -32,8 +32,7 @@ const char *pn_message_name(int message_id) {
       NAME(LIGHT_TEXTURE),        NAME(LIGHT_FIT),      NAME(LIGHT_MAP),         NAME(LIGHT_ANGLE),
       NAME(LIGHT_UNSET),          NAME(MAPS_STALE),     NAME(TECHNIQUE_UNKNOWN), NAME(PARAMETER_UNKNOWN),
       NAME(PARAMETER_VALUE),      NAME(RESULT_TARGET),  NAME(FORWARD),           NAME(FALLBACK),
-      NAME(ACCUMULATION),
-      NAME(STATE_MODE),
+      NAME(ACCUMULATION),         NAME(STATE_MODE),     NAME(MESH_EDGES),        NAME(CASTER_MESHES),
 #undef NAME
   };
   _Static_assert(sizeof names / sizeof *names == PN_MESSAGE_COUNT, "every message has a name");

@@ -28,7 +28,7 @@ static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, i
   return result;
 }
 
-static pn_fit_request fit_request(const pn_light *light) {
+static pn_fit_request fit_request(const pn_light *light, const pn_maps_want *want) {
   const pn_light_desc *d = &light->desc;
   return (pn_fit_request){.frame = &light->frame,
                           .near_distance = d->near_distance,
@@ -36,11 +36,13 @@ static pn_fit_request fit_request(const pn_light *light) {
                           .width = d->map_width,
                           .height = d->map_height,
                           .given = d->fit == PN_FIT_GIVEN ? d->fit_bounds : NULL,
-                          .visible = light->has_visible ? &light->visible : NULL};
+                          .visible = light->has_visible ? &light->visible : NULL,
+                          .reach = want->reach,
+                          .reach_width = want->reach_width};
 }
 
-static void fit_light(pn_light *light) {
-  pn_fit_request request = fit_request(light);
+static void fit_light(pn_light *light, const pn_maps_want *want) {
+  pn_fit_request request = fit_request(light, want);
   pn_fit_maps(light->casters, light->groups, &request, &light->maps.fit);
   if (!light->maps.fit.clamped || light->warned_angle) return;
   light->warned_angle = true;
@@ -50,7 +52,7 @@ static void fit_light(pn_light *light) {
 
 static pn_map_draw tile_draw(const pn_light *light, const pn_maps_want *want, int tile) {
   const pn_fit_result *fit = &light->maps.fit;
-  pn_fit_request request = fit_request(light);
+  pn_fit_request request = fit_request(light, want);
   pn_map_draw draw = {.frame = &light->frame,
                       .casters = light->casters,
                       .groups = light->groups,
@@ -69,6 +71,7 @@ static pn_result draw_maps(pn_light *light, const pn_maps_want *want) {
   pn_result result = pn_maps_shape(gpu, maps, want, maps->fit.tiles, width, height);
   if (result != PN_OK) return result;
   pn_block_frame(&maps->block, &light->frame, gpu, maps->fit.tiles, maps->layers, width, height);
+  maps->block.extent[3] = (float)maps->fit.w_reach;
   for (int tile = 0; tile < maps->fit.tiles && result == PN_OK; tile++) {
     pn_map_draw draw = tile_draw(light, want, tile);
     pn_block_map(&maps->block, gpu, &draw, width, height);
@@ -77,8 +80,11 @@ static pn_result draw_maps(pn_light *light, const pn_maps_want *want) {
   pn_clock_mark(gpu, &light->clock, "depth_map");
   if (result != PN_OK || !want->range.structure) return result;
   result = pn_light_bind_block(light);
-  if (result == PN_OK) result = pn_range_build(gpu, maps);
-  pn_clock_mark(gpu, &light->clock, "range");
+  const pn_technique_class *technique = light->technique;
+  bool own = want->range.structure == PN_RANGE_OWN;
+  pn_build_request request = {gpu, &light->frame, light->values, maps, light->casters, light->groups};
+  if (result == PN_OK) result = own ? technique->build(&request) : pn_range_build(gpu, maps);
+  pn_clock_mark(gpu, &light->clock, own ? technique->stage : "range");
   return result;
 }
 
@@ -86,14 +92,14 @@ static pn_result update_maps(pn_light *light, pn_receiver *const *visible, int v
   pn_result result = pn_gpu_check_lost(pn_light_gpu(light));
   if (result == PN_OK) result = find_frusta(light, visible, visible_count);
   if (result != PN_OK) return result;
-  fit_light(light);
+  pn_maps_want want;
+  light->technique->want(light->values, &want);
+  fit_light(light, &want);
   if (light->desc.fit == PN_FIT_VISIBLE && light->has_visible && !light->maps.fit.empty) {
     result = find_surfaces(light, visible, visible_count);
     if (result != PN_OK) return result;
-    fit_light(light);
+    fit_light(light, &want);
   }
-  pn_maps_want want;
-  light->technique->want(light->values, &want);
   if (!light->maps.fit.empty && pn_want_layers(&want) > 0) result = draw_maps(light, &want);
   light->maps.ready = result == PN_OK;
   return result;

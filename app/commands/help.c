@@ -10,6 +10,7 @@ enum { PARAMETERS_MAX = 64, LINE_MAX_TEXT = 100 };
 static void value_text(const pn_parameter *p, double value, char *text, size_t size) {
   if (p->type == PN_CHOICE) snprintf(text, size, "%s", p->choices[(int)value]);
   else if (p->type == PN_BOOL) snprintf(text, size, "%s", value != 0 ? "on" : "off");
+  else if (p->choices && value == p->least) snprintf(text, size, "%s", p->choices[0]);
   else snprintf(text, size, "%g", value);
 }
 
@@ -34,7 +35,7 @@ static void print_preset(FILE *file, const pn_technique *technique, const pn_par
 
 void print_technique(FILE *file, const pn_technique *technique) {
   fprintf(file, "%s: %s\n  %s\n", technique->name, technique->title, technique->help);
-  if (technique->needs_meshes) fputs("  needs triangle meshes: draw callbacks cast no shadow with it\n", file);
+  if (technique->needs_meshes) fputs("  needs triangle meshes: what draw callbacks draw casts a hard shadow at most\n", file);
   if (technique->needs_closed) fputs("  casters should be closed surfaces\n", file);
   if (!technique->self_shadows) fputs("  casters do not shadow themselves\n", file);
   if (!technique->parameter_count) fputs("  no parameters\n", file);
@@ -48,7 +49,8 @@ void print_technique(FILE *file, const pn_technique *technique) {
     } else if (p->type == PN_BOOL) {
       snprintf(values, sizeof values, "on|off");
     } else {
-      snprintf(values, sizeof values, "%g..%g%s%s", p->least, p->most, *p->unit ? " " : "", p->unit);
+      snprintf(values, sizeof values, "%s%s%g..%g%s%s", p->choices ? p->choices[0] : "", p->choices ? "|" : "", p->least,
+               p->most, *p->unit ? " " : "", p->unit);
     }
     fprintf(file, "  %s=%s  default %s\n      %s%s%s%s\n", p->name, values, initial, p->help, *p->source ? " (" : "",
             p->source, *p->source ? ")" : "");

@@ -127,6 +127,10 @@ typedef enum {
   PN_MESSAGE_FALLBACK,                /* information: a slower way is taken because the device lacks a feature */
   PN_MESSAGE_ACCUMULATION,            /* warning: 16-bit sums of many small occluders lose some of them (technique ssm) */
   PN_MESSAGE_STATE_MODE,              /* pn_context_desc.state is none of pn_state_mode */
+  /* information, once a mesh: edges that are open, shared by three and more faces, between faces wound against each
+   * other */
+  PN_MESSAGE_MESH_EDGES,
+  PN_MESSAGE_CASTER_MESHES,           /* warning: the technique needs meshes, and some casters have none */
   PN_MESSAGE_COUNT
 } pn_message;
 
@@ -374,14 +378,15 @@ typedef struct {
   const char *name, *unit, *help, *source; /* unit may be "", source is the paper's section or equation */
   pn_type type;
   double least, most, initial;  /* PN_CHOICE: 0 .. number of choices - 1 */
-  const char *const *choices;   /* PN_CHOICE: NULL-terminated; else NULL */
+  /* NULL-terminated. PN_CHOICE: its values by name. PN_FLOAT: one word that stands for the value least, or NULL */
+  const char *const *choices;
 } pn_parameter;
 
 typedef struct {
   const char *name, *title, *help;
   const pn_parameter *parameters;
   int parameter_count;
-  int needs_meshes; /* draw callbacks cast no shadow with it */
+  int needs_meshes; /* what draw callbacks draw casts a hard shadow at most: there is no mesh to look at */
   int needs_closed; /* casters should be closed surfaces */
   int forward;      /* has a pn_visibility() for the host's own shaders */
   int self_shadows; /* casters may be receivers too */

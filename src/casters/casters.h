@@ -12,7 +12,9 @@ typedef struct {
 /* Boxes over runs of triangles: they bound a mesh in any projection far more tightly than one box does. */
 enum { PN_BOXES_MAX = 256, PN_BOX_TRIANGLES = 64 };
 
-typedef struct {
+struct pn_mesh_edges; /* casters/edges.h */
+
+typedef struct pn_mesh_data {
   uint32_t id;                           /* 0: a free slot */
   pn_span positions, indices, texcoords; /* as described; data pointers are not kept */
   int index_bytes;
@@ -28,6 +30,7 @@ typedef struct {
   pn_box *boxes;
   int box_count;
   size_t box_triangles; /* each box is over that many of the triangles drawn, in order; 0: it says nothing of that */
+  struct pn_mesh_edges *edges; /* NULL until a technique asks for them */
 } pn_mesh_data;
 
 typedef struct {
@@ -51,6 +54,7 @@ struct pn_casters {
   int instance_count, instance_capacity;
   uint32_t next_id;
   pn_callback callbacks[PN_GROUP_COUNT];
+  bool told_meshes; /* that some have no mesh to find edges in */
 };
 
 pn_mesh_data *pn_find_mesh(const pn_casters *casters, uint32_t id);

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "casters/edges.h"
+
 /* ---- checks ------------------------------------------------------------------------------------------------------ */
 
 static bool span_given(const pn_span *span) { return span->buffer || span->data; }
@@ -305,10 +307,12 @@ pn_result pn_mesh_deform(pn_gpu *gpu, pn_mesh_data *mesh, const pn_span *positio
     GL(gpu, BindVertexArray)(0);
   }
   if (result == PN_OK && bounds) given_box(mesh, bounds, bounds + 3);
+  if (mesh->edges) mesh->edges->stale = true;
   return result;
 }
 
 void pn_mesh_drop(pn_gpu *gpu, pn_mesh_data *mesh, bool abandon) {
+  pn_mesh_edges_free(gpu, &mesh->edges, abandon);
   if (!abandon) {
     if (mesh->vertex_array) GL(gpu, DeleteVertexArrays)(1, &mesh->vertex_array);
     for (int i = 0; i < 3; i++)

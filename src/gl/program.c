@@ -178,11 +178,28 @@ static void set_samplers(pn_gpu *gpu, const pn_program *program) {
     const char *name;
     int unit;
   } samplers[] = {
-      {"pn_maps", PN_UNIT_MAPS},     {"pn_range", PN_UNIT_RANGE},
-      {"pn_depth", PN_UNIT_DEPTH},   {"pn_normal", PN_UNIT_NORMAL},
-      {"pn_mask", PN_UNIT_MASK},     {"pn_work", PN_UNIT_WORK},
-      {"pn_peel_map", PN_UNIT_PEEL}, {"pn_alpha", PN_UNIT_ALPHA},
-      {"pn_seen", PN_UNIT_SEEN},     {"pn_seen_range", PN_UNIT_SEEN_RANGE},
+      {"pn_maps", PN_UNIT_MAPS},
+      {"pn_range", PN_UNIT_RANGE},
+      {"pn_depth", PN_UNIT_DEPTH},
+      {"pn_normal", PN_UNIT_NORMAL},
+      {"pn_mask", PN_UNIT_MASK},
+      {"pn_work", PN_UNIT_WORK},
+      {"pn_peel_map", PN_UNIT_PEEL},
+      {"pn_alpha", PN_UNIT_ALPHA},
+      {"pn_seen", PN_UNIT_SEEN},
+      {"pn_seen_range", PN_UNIT_SEEN_RANGE},
+      /* the passes over a mesh's edges see no receiver */
+      {"pn_edges", PN_UNIT_DEPTH},
+      {"pn_points", PN_UNIT_NORMAL},
+      {"pn_sides", PN_UNIT_MASK},
+      {"pn_rings", PN_UNIT_WORK},
+      {"pn_entries", PN_UNIT_PEEL},
+      {"pn_kept", PN_UNIT_ALPHA},
+      {"pn_sums_low", PN_UNIT_WORK},
+      {"pn_sums_middle", PN_UNIT_PEEL},
+      {"pn_sums_high", PN_UNIT_SEEN},
+      {"pn_list", PN_UNIT_SEEN},
+      {"pn_total", PN_UNIT_RANGE},
   };
   GLint before = 0;
   GL(gpu, GetIntegerv)(GL_CURRENT_PROGRAM, &before);

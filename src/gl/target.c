@@ -44,6 +44,7 @@ static const format_info formats[] = {
     {GL_RG32F, GL_RG, GL_FLOAT, 8, 2},
     {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16, 4},
     {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4, 1},
+    {GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8, 2},
     {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16, 4},
     {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, 2, 1},
     {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, 4, 1},
@@ -179,13 +180,14 @@ static pn_result attach_all(pn_gpu *gpu, const pn_pass *pass) {
 static void set_depth(pn_gpu *gpu, const pn_pass *pass) {
   if (!pass->depth.texture) return;
   GL(gpu, Enable)(GL_DEPTH_TEST);
-  GL(gpu, DepthMask)(GL_TRUE);
+  GL(gpu, DepthMask)(pass->depth_use == PN_DEPTH_TEST ? GL_FALSE : GL_TRUE);
   if (pass->depth_clamp) GL(gpu, Enable)(GL_DEPTH_CLAMP);
   if (pass->depth_range[1] > 0) pn_set_depth_range(gpu, pass->depth_range[0], pass->depth_range[1]);
   if (pass->depth_use == PN_DEPTH_WRITE) {
     GL(gpu, DepthFunc)(GL_ALWAYS);
     return;
   }
+  if (pass->depth_use == PN_DEPTH_TEST) return; /* GL_LESS is set */
   bool farthest = pass->depth_use == PN_DEPTH_FARTHEST;
   GL(gpu, DepthFunc)(farthest ? GL_GREATER : GL_LESS);
   GLfloat nothing = farthest ? 0.0f : 1.0f;

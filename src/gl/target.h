@@ -36,14 +36,16 @@ typedef struct {
   int level, layer;
 } pn_attachment;
 
-typedef enum { PN_DEPTH_NONE = 0, PN_DEPTH_NEAREST, PN_DEPTH_FARTHEST, PN_DEPTH_WRITE } pn_depth_use;
+typedef enum { PN_DEPTH_NONE = 0, PN_DEPTH_NEAREST, PN_DEPTH_FARTHEST, PN_DEPTH_WRITE, PN_DEPTH_TEST } pn_depth_use;
 
 /* Everything a pass depends on; pn_pass_begin sets all of it and leaves nothing to what was there before. */
 typedef struct {
   pn_attachment color[2]; /* texture 0: none */
   pn_attachment depth;
   int width, height;
-  pn_depth_use depth_use;  /* with depth: which surface stays; the image is cleared to 'nothing there' first */
+  /* with depth: which surface stays; the image is cleared to 'nothing there' first. TEST: it stays as it is, and what
+   * lies nearer is drawn */
+  pn_depth_use depth_use;
   pn_faces faces;          /* 0 = any */
   GLdouble depth_range[2]; /* both 0: 0 to 1 */
   bool depth_clamp;

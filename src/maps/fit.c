@@ -211,6 +211,36 @@ static void make_tiles(const pn_fit_request *request, pn_fit_result *out) {
   }
 }
 
+/* ---- reach ------------------------------------------------------------------------------------------------------- */
+
+/* A w that no receiver lies below. Behind a rectangle w > 0 however far a receiver is. Under a sun it is not known
+ * without visible receivers: then four times as far behind the casters as these are wide, or as far as it takes for
+ * the map to grow by a quarter of that width. */
+static double least_receiver(const fitting *f) {
+  const pn_fit_request *r = f->request;
+  double w = r->visible ? r->visible->least[2] : -INFINITY;
+  if (!r->frame->sun) return fmin(fmax(w, 0), f->most[2]);
+  double wide = fmax(f->most[0] - f->least[0], f->most[1] - f->least[1]);
+  double behind = wide * fmax(4, 0.25 / fmax(r->frame->extent[0], r->frame->extent[1]));
+  return fmin(w > -1e29 ? w : f->least[2] - behind, f->most[2]);
+}
+
+/* Around the casters by their longest shadow, and of that what visible receivers can ask for. */
+static bool extend_to_reach(fitting *f, pn_fit_result *out) {
+  const pn_fit_request *r = f->request;
+  out->w_reach = least_receiver(f);
+  for (int i = 0; i < 2; i++) {
+    double grow = r->reach_width > 0 ? r->reach_width : r->frame->extent[i] * (f->most[2] - out->w_reach);
+    f->least[i] -= grow;
+    f->most[i] += grow;
+    if (!r->visible) continue;
+    f->least[i] = fmax(f->least[i], r->visible->least[i]);
+    f->most[i] = fmin(f->most[i], r->visible->most[i]);
+    if (!(f->least[i] <= f->most[i])) return false;
+  }
+  return true;
+}
+
 /* A caster seen exactly from its side has no extent along one axis; the map needs one. */
 static void widen_flat(double *low, double *high, double other_extent) {
   double least = fmax(1e-6 * fmax(fabs(*low), fabs(*high)), fmax(1e-4 * other_extent, 1e-9));
@@ -245,6 +275,10 @@ void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_reques
   out->empty = !f.any;
   if (out->empty) return;
   if (request->given) fit_given(&f);
+  if (request->reach && !extend_to_reach(&f, out)) {
+    out->empty = true;
+    return;
+  }
   for (int i = 0; i < 2; i++) {
     out->bounds[i] = f.least[i];
     out->bounds[i + 2] = f.most[i];

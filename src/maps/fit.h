@@ -14,6 +14,7 @@ typedef struct {
   bool clamped;     /* opened past 170 degrees */
   double bounds[4]; /* s0, t0, s1, t1 */
   double w_near, w_far;
+  double w_reach; /* with reach: no receiver lies below */
   int tiles;
   double tile[PN_TILES_MAX][4]; /* with a border of one texel, except for a fit that is given */
 } pn_fit_result;
@@ -25,6 +26,10 @@ typedef struct {
   int width, height;
   const float *given;       /* PN_FIT_GIVEN's box, or NULL */
   const pn_region *visible; /* receivers that casters must be able to shadow, or NULL */
+  /* Cover what the casters can darken, as far as the light's extent says, or reach_width map units, around them; of
+   * that what visible receivers can ask for. */
+  bool reach;
+  double reach_width;
 } pn_fit_request;
 
 /* Widens a range to whole steps of a grid that depends on its extent alone, so that what moves a little does not move

@@ -10,7 +10,8 @@
 
 struct pn_LightData {
   vec4 scene_u, scene_v, scene_z;  // light frame from scene, by rows; forward shading only
-  vec4 extent;                     // A_u, A_v, 1 for a sun, unused
+  // A_u, A_v, 1 for a sun, w that no receiver lies below (maps that reach as far as shadows do)
+  vec4 extent;
   vec4 maps;                       // number of tiles, layers of each, width, height
   // w of the nearest caster's plane, w_far, error of a stored depth in w, raster error in texels
   vec4 range;

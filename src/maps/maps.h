@@ -10,7 +10,12 @@ enum { PN_MAPS_MAX = 16, PN_LAYERS_MAX = 16, PN_PARAMETERS_MAX = 12 };
  * a stack (their MSSM: level i over the 2^i x 2^i texels centred on each texel, at full resolution). Over quads, each
  * texel brings its right and upper neighbours. least_there, pyramids only: a third channel has the smallest w beside
  * empty texels, 1e30 where all are. */
-typedef enum { PN_RANGE_NONE = 0, PN_RANGE_PYRAMID, PN_RANGE_STACK } pn_range_structure;
+typedef enum {
+  PN_RANGE_NONE = 0,
+  PN_RANGE_PYRAMID,
+  PN_RANGE_STACK,
+  PN_RANGE_OWN /* the technique puts an image of its own in that place: see pn_technique_class.build */
+} pn_range_structure;
 typedef struct {
   pn_range_structure structure;
   bool quads, least_there;
@@ -24,6 +29,8 @@ typedef struct {
   pn_faces near_faces, far_faces; /* which surfaces count: PN_FACES_ANY where it does not matter */
   float focus;                    /* layers past the first hold only this share of the map's width and height; 0: all */
   pn_range_kind range;            /* what summarises every layer */
+  bool reach;                     /* maps cover what the casters can darken, not only the casters themselves */
+  double reach_width;             /* ... that is so far around them, map units; 0: as far as the light's size says */
 } pn_maps_want;
 
 /* The uniform block of maps.glsl, std140. */

@@ -31,7 +31,7 @@ pn_result pn_range_shape(pn_gpu *gpu, pn_texture *texture, const pn_range_kind *
   if (kind->structure == PN_RANGE_STACK)
     return pn_texture_shape(gpu, texture, GL_RG32F, width, height,
                             layers * level_count(power_above(larger(width, height))), 1);
-  pn_texture_free(gpu, texture, false);
+  if (kind->structure != PN_RANGE_OWN) pn_texture_free(gpu, texture, false);
   return PN_OK;
 }
 

@@ -7,8 +7,9 @@
 #include <string.h>
 
 static const pn_technique_class *const classes[] = {
-    &pn_technique_hard,           &pn_technique_pcf,     &pn_technique_pcss, &pn_technique_average, &pn_technique_ssm,
-    &pn_technique_backprojection, &pn_technique_bitmask,
+    &pn_technique_hard,    &pn_technique_pcf,       &pn_technique_pcss,
+    &pn_technique_average, &pn_technique_ssm,       &pn_technique_backprojection,
+    &pn_technique_bitmask, &pn_technique_smoothies,
 };
 enum { COUNT = sizeof classes / sizeof *classes };
 
@@ -60,7 +61,9 @@ static void list_parameters(const pn_technique *t, char out[256]) {
 static void describe_values(const pn_parameter *p, char out[256]) {
   if (p->type == PN_BOOL) snprintf(out, 256, "on or off");
   if (p->type == PN_INT) snprintf(out, 256, "a whole number from %.0f to %.0f", p->least, p->most);
-  if (p->type == PN_FLOAT) snprintf(out, 256, "a number from %g to %g", p->least, p->most);
+  if (p->type == PN_FLOAT)
+    snprintf(out, 256, "%s%sa number from %g to %g", p->choices ? p->choices[0] : "", p->choices ? " or " : "",
+             p->least, p->most);
   if (p->type != PN_CHOICE) return;
   out[0] = 0;
   for (int i = 0; p->choices[i]; i++) {
@@ -106,7 +109,9 @@ static bool read_value(const pn_parameter *p, const char *text, double *out) {
       }
     return false;
   }
-  return read_number(text, out) && value_in_range(p, *out);
+  bool word = p->type == PN_FLOAT && p->choices && !strcmp(p->choices[0], text);
+  if (word) *out = p->least;
+  return word || (read_number(text, out) && value_in_range(p, *out));
 }
 
 static int find_parameter(const pn_technique *t, const char *name) {

@@ -11,16 +11,26 @@ typedef struct {
   pn_gpu *gpu;
   const pn_light_desc *desc;
   const pn_frame *frame;
-  const double *values;     /* parameters, in the order of the table */
-  pn_maps *maps;            /* drawn by pn_maps_update as the technique wanted them */
-  pn_buffer *block; /* the light's, bound */
-  pn_casters *casters;      /* of the last pn_maps_update; NULL when they are gone */
+  const double *values; /* parameters, in the order of the table */
+  pn_maps *maps;        /* drawn by pn_maps_update as the technique wanted them */
+  pn_buffer *block;     /* the light's, bound */
+  pn_casters *casters;  /* of the last pn_maps_update; NULL when they are gone */
   uint32_t groups;
   const pn_region *visible; /* what that update was fitted to, or NULL */
   pn_receiver *receiver;
   pn_pair *pair;
   pn_attachment target; /* where visibility goes */
 } pn_visibility_request;
+
+/* What a technique has that adds an image of its own to the light's maps. */
+typedef struct {
+  pn_gpu *gpu;
+  const pn_frame *frame;
+  const double *values;
+  pn_maps *maps; /* drawn; the block that describes them is bound */
+  pn_casters *casters;
+  uint32_t groups;
+} pn_build_request;
 
 enum { PN_TECHNIQUE_DEFINES = 256 };
 
@@ -35,6 +45,9 @@ typedef struct {
   /* #defines that the shader depends on, as lines; what may change without compiling is read from the block. NULL:
    * none. */
   void (*defines)(const double *values, char out[PN_TECHNIQUE_DEFINES]);
+  /* Fills maps->range, in each pn_maps_update, for a technique that wants PN_RANGE_OWN; stage: the name of its time. */
+  pn_result (*build)(const pn_build_request *request);
+  const char *stage;
   bool searches; /* the shader includes search/search.glsl and tells what it did */
   /* Others draw by themselves, and compile by themselves. */
   pn_result (*draw)(const pn_visibility_request *request);
@@ -52,6 +65,6 @@ void pn_technique_defines(const pn_technique_class *technique, const double *val
 bool pn_parameter_set(const pn_technique *table, const char *name, double value, double *values, pn_message *message);
 
 extern const pn_technique_class pn_technique_hard, pn_technique_pcf, pn_technique_pcss, pn_technique_average,
-    pn_technique_ssm, pn_technique_backprojection, pn_technique_bitmask;
+    pn_technique_ssm, pn_technique_backprojection, pn_technique_bitmask, pn_technique_smoothies;
 
 #endif

@@ -73,6 +73,20 @@ static void test_three_ways(void **state) {
   host_view_close(&v);
 }
 
+/* Techniques that look at meshes find the same edges in memory and in the host's buffers. */
+static void test_edges(void **state) {
+  host *h = *state;
+  camera view = camera_at(0);
+  camera_view v;
+  assert_int_equal(host_view(h, &view, &v), PN_OK);
+  float *memory = shadow(h, CAST_MEMORY, "smoothies", &v), *buffers = shadow(h, CAST_BUFFERS, "smoothies", &v);
+  assert_memory_equal(memory, buffers, PIXELS * sizeof *memory);
+  assert_true(dark_pixels(memory, CAMERA_WIDTH, CAMERA_HEIGHT) > 1000);
+  free(memory);
+  free(buffers);
+  host_view_close(&v);
+}
+
 /* Techniques that peel call the callback with pn_peel's map; the snippet links and hides what was seen already. */
 static void test_peeling(void **state) {
   host *h = *state;
@@ -249,6 +263,7 @@ static void test_instances(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_teardown(test_three_ways, host_check),
+      cmocka_unit_test_teardown(test_edges, host_check),
       cmocka_unit_test_teardown(test_peeling, host_check),
       cmocka_unit_test_teardown(test_peel_text, host_check),
       cmocka_unit_test_teardown(test_holes, host_check),

@@ -13,7 +13,7 @@
 
 enum { PIXELS = CAMERA_WIDTH * CAMERA_HEIGHT };
 
-static const char *const techniques[] = {"hard", "pcf", "pcf:filter=bicubic", "pcss", "average:samples=16"};
+static const char *const techniques[] = {"hard", "pcf", "pcf:filter=bicubic", "pcss", "average:samples=16", "smoothies"};
 enum { TECHNIQUES = sizeof techniques / sizeof *techniques };
 
 /* Again in the same context, and again in a new one. */

@@ -95,6 +95,8 @@ static pn_result set_light(void) {
 
 static pn_result choose(void) { return pn_light_technique(light, "pcss:samples=4", NULL, 0); }
 
+static pn_result choose_edges(void) { return pn_light_technique(light, "smoothies", NULL, 0); }
+
 static pn_result update(void) { return pn_maps_update(light, h.casters, PN_GROUPS_ALL, &receiver, 1); }
 
 static pn_result see(void) { return pn_visibility(light, receiver); }
@@ -121,6 +123,9 @@ static const struct {
     {"pn_maps_update", update},
     {"pn_visibility", see},
     {"pn_glsl", text},
+    {"pn_maps_update", update},
+    {"pn_visibility", see},
+    {"pn_light_technique", choose_edges},
     {"pn_maps_update", update},
     {"pn_visibility", see},
 };

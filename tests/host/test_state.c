@@ -13,11 +13,11 @@
 #include "host.h"
 #include "state.h"
 
-enum { WIDTH = 96, HEIGHT = 72, PIXELS = WIDTH * HEIGHT, LIGHTS = 3, VIEWS = 3, IMAGES = LIGHTS * VIEWS };
+enum { WIDTH = 96, HEIGHT = 72, PIXELS = WIDTH * HEIGHT, LIGHTS = 4, VIEWS = 3, IMAGES = LIGHTS * VIEWS };
 
 /* One light for each way the library may look back, and techniques that draw once and often. */
-static const char *const techniques[LIGHTS] = {"pcss", "pcf:filter=bicubic", "average:samples=4"};
-static const pn_fit fits[LIGHTS] = {PN_FIT_CASTERS, PN_FIT_VISIBLE, PN_FIT_FRUSTUM};
+static const char *const techniques[LIGHTS] = {"pcss", "pcf:filter=bicubic", "average:samples=4", "smoothies"};
+static const pn_fit fits[LIGHTS] = {PN_FIT_CASTERS, PN_FIT_VISIBLE, PN_FIT_FRUSTUM, PN_FIT_VISIBLE};
 /* A texture, a multisampled texture, a multisampled renderbuffer. */
 static const int cameras[VIEWS] = {1, 12, 15};
 

@@ -118,6 +118,14 @@ static void add_others(void) {
   add_key(screen, "techniques/ssm/arguments.frag.glsl", "", "");
   add_key(screen, "techniques/ssm/add.frag.glsl", "", "");
   add_key("", "casters/peel.glsl", "", "");
+  add_key(screen, "casters/points.frag.glsl", "", "");
+  add_key(screen, "casters/silhouette.frag.glsl", "", "");
+  add_key(screen, "techniques/smoothies/keep.frag.glsl", "", "");
+  add_key(screen, "techniques/smoothies/sum.frag.glsl", "", "PN_FIRST 0\n");
+  add_key(screen, "techniques/smoothies/sum.frag.glsl", "", "PN_FIRST 1\n");
+  add_key(screen, "techniques/smoothies/count.frag.glsl", "", "");
+  add_key(screen, "techniques/smoothies/list.frag.glsl", "", "");
+  add_key("techniques/smoothies/smoothie.vert.glsl", "techniques/smoothies/smoothie.frag.glsl", "", "");
 }
 
 static void list_programs(void) {

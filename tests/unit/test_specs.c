@@ -142,10 +142,23 @@ static void test_set_by_name(void **state) {
   assert_true(values[1] == 9);
 }
 
+/* A number whose least value has a name. */
+static void test_word(void **state) {
+  (void)state;
+  assert_true(value_of("smoothies", "width") == 0);
+  assert_true(value_of("smoothies:width=light", "width") == 0);
+  assert_true(value_of("smoothies:width=0", "width") == 0);
+  assert_true(value_of("smoothies:width=0.25", "width") == 0.25);
+  refuse("smoothies:width=dark", "width=dark", "light or a number from 0 to 100");
+  refuse("smoothies:width=101", "width=101", "light or");
+  refuse("smoothies:width=lights", "width=lights", "light or");
+  refuse("pcss:samples=light", "samples=light", "whole number");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_defaults),     cmocka_unit_test(test_good),   cmocka_unit_test(test_bad),
-      cmocka_unit_test(test_short_reason), cmocka_unit_test(test_locale), cmocka_unit_test(test_set_by_name),
+      cmocka_unit_test(test_short_reason), cmocka_unit_test(test_locale), cmocka_unit_test(test_word), cmocka_unit_test(test_set_by_name),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,350 @@
+/* Smoothies on scenes with a closed form: a square over a plane, a box that stands, a slanted edge; and bad meshes. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stage.h"
+
+/* The light shines down from height L; u is x, v is -z. The square hangs at height h over the ground, y = 0. */
+static const double L = 4, h = 1.5, half_square = 0.6;
+
+static double clamp(double x, double low, double high) { return fmin(fmax(x, low), high); }
+
+static camera from_above(int size, double half_height) {
+  return (camera){.width = size, .height = size, .eye = v3(0.013, 10, 0.007), .target = v3(0.013, 0, 0.007), .up = v3(0, 0, -1),
+                  .orthographic = true, .half_height = half_height, .near = 1, .far = 20};
+}
+
+/* ---- the square over the plane ---- */
+
+typedef struct {
+  bool sun;
+  double a, b; /* half extents of the light, or tangents */
+  pn_fit fit;
+  const char *spec;
+} square_case;
+
+/* Share of the light's extent a that the square hides from x, its other axis apart: the square's edge is seen at
+ * (edge - x) / (share of the way) on the light. */
+static double hidden(const square_case *c, double x, double a) {
+  double k = c->sun ? h : h / L, scale = c->sun ? 1 : 1 - h / L;
+  double from = (-half_square - x * scale) / k, to = (half_square - x * scale) / k;
+  return (clamp(to, -a, a) - clamp(from, -a, a)) / (2 * a);
+}
+
+static pn_light_desc square_light(const square_case *c, int map) {
+  pn_light_desc light = c->sun ? sun_along(v3(0, -1, 0), c->a, c->b, map) : light_at(v3(0, L, 0), v3(0, -1, 0), c->a, c->b, map);
+  light.fit = c->fit;
+  return light;
+}
+
+static double texel_of(const stage *s, bool sun) { /* on the ground */
+  pn_maps_info info;
+  assert_ok(pn_light_maps(s->light, &info));
+  return fmax(info.s1 - info.s0, info.t1 - info.t0) / (info.width - 2) * (sun ? 1 : L);
+}
+
+/* Along x where all of the other axis is hidden: 2 V - 1 outside the hard shadow, within 0.01; 0 inside; 1 exactly where V is 1. A texel at each
+ * end belongs to neither. */
+static void check_square(const square_case *c) {
+  enum { SIZE = 160 };
+  soup ground = {0}, square = {0};
+  soup_patch(&ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
+  soup_patch(&square, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
+  view v;
+  stage s;
+  camera k = from_above(SIZE, 2);
+  view_draw(&v, &k, &ground);
+  stage_open(&s);
+  stage_cast(&s, &square);
+  stage_receive(&s, &v, false);
+  pn_light_desc light = square_light(c, 512);
+  float *visibility = stage_visibility(&s, &light, c->spec);
+  double texel = texel_of(&s, c->sun), worst = 0, scale = c->sun ? 1 : 1 - h / L;
+  int inside = 0, between = 0, lit = 0;
+  for (int i = 0; i < SIZE * SIZE; i++) {
+    vec p = view_point(&v, i % SIZE, i / SIZE);
+    double across[2] = {hidden(c, p.x, c->a), hidden(c, p.z, c->b)};
+    double outside = fmax(fabs(p.x), fabs(p.z)) - half_square / scale;
+    double V = 1 - across[0] * across[1];
+    if (outside < -texel) inside += visibility[i] == 0, assert_true(visibility[i] == 0);
+    double reach[2] = {(half_square + c->a * (c->sun ? h : h / L)) / scale, (half_square + c->b * (c->sun ? h : h / L)) / scale};
+    if (fabs(p.x) > reach[0] + texel || fabs(p.z) > reach[1] + texel) lit += visibility[i] == 1, assert_true(visibility[i] == 1);
+    if (outside < texel || (across[0] < 1 && across[1] < 1)) continue;
+    if (fabs(fabs(p.x) - reach[0]) < texel || fabs(fabs(p.z) - reach[1]) < texel) continue;
+    worst = fmax(worst, fabs(visibility[i] - (2 * V - 1)));
+    between += V < 1;
+  }
+  print_message("%s, %s of %g x %g, fit %d: off by %.4f, %d pixels in the penumbra\n", c->spec, c->sun ? "sun" : "rectangle", c->a, c->b, (int)c->fit,
+                worst, between);
+  assert_true(inside > 300 && between > 100 && lit > 300);
+  assert_true(worst <= 0.01);
+  free(visibility);
+  stage_close(&s);
+  view_free(&v);
+  soup_free(&ground);
+  soup_free(&square);
+}
+
+static void test_square(void **state) {
+  (void)state;
+  static const char *const specs[] = {"smoothies", "smoothies:geometry=edges"};
+  for (int i = 0; i < 2; i++)
+    for (int sun = 0; sun < 2; sun++)
+      for (int fit = PN_FIT_CASTERS; fit <= PN_FIT_FRUSTUM; fit++) {
+        check_square(&(square_case){sun, 0.3, 0.2, (pn_fit)fit, specs[i]});
+        check_square(&(square_case){sun, sun ? 0.35 : 0.5, sun ? 0.35 : 0.5, (pn_fit)fit, specs[i]});
+      }
+}
+
+/* A width in map units, as in the notes: alpha / (1 - b / r), alpha the distance in the map over the width; under a sun b and r count from the
+ * nearest caster's plane. */
+static void test_width(void **state) {
+  (void)state;
+  enum { SIZE = 96 };
+  const double width = 0.1;
+  for (int sun = 0; sun < 2; sun++) {
+    square_case c = {sun, 0.3, 0.3, PN_FIT_VISIBLE, "smoothies:width=0.1,geometry=edges"};
+    soup ground = {0}, square = {0};
+    soup_patch(&ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
+    soup_patch(&square, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
+    view v;
+    stage s;
+    camera k = from_above(SIZE, 1.5);
+    view_draw(&v, &k, &ground);
+    stage_open(&s);
+    stage_cast(&s, &square);
+    stage_receive(&s, &v, false);
+    pn_light_desc light = square_light(&c, 512);
+    float *visibility = stage_visibility(&s, &light, c.spec);
+    pn_maps_info info;
+    assert_ok(pn_light_maps(s.light, &info));
+    double texel = (info.s1 - info.s0) / (info.width - 2), worst = 0;
+    double w_b = sun ? h - 0.0 : 1 / (L - h), w_r = sun ? 0 : 1 / L; /* a sun's w = height, its origin that of the scene */
+    int between = 0;
+    for (int i = 0; i < SIZE * SIZE; i++) {
+      vec p = view_point(&v, i % SIZE, i / SIZE);
+      if (fabs(p.z) > 0.4) continue;
+      double d = fabs(p.x) * (sun ? 1 : w_r) - half_square * (sun ? 1 : w_b);
+      double remapped = sun ? d / width * (info.w_near - w_r) / (w_b - w_r) : d / width / (1 - w_r / w_b);
+      if (d < texel || fabs(remapped - 1) < 2 * texel / width) continue;
+      worst = fmax(worst, fabs(visibility[i] - fmin(remapped, 1)));
+      between += remapped < 1;
+    }
+    print_message("width=0.1, %s: off by %.4f, %d pixels in the penumbra\n", sun ? "sun" : "rectangle", worst, between);
+    assert_true(between > 50);
+    assert_true(worst <= 0.01);
+    free(visibility);
+    stage_close(&s);
+    view_free(&v);
+    soup_free(&ground);
+    soup_free(&square);
+  }
+}
+
+/* ---- contact ---- */
+
+/* Whether a vertical line from the ground at p up to the light's centre passes the box [-e, e] x [0, top] x [-e, e], moved in by margin. */
+static bool box_hides(vec p, vec light, double e, double top, double margin) {
+  double low = 0, high = 1;
+  const double from[3] = {p.x, p.y, p.z}, to[3] = {light.x, light.y, light.z};
+  const double least[3] = {-e + margin, -1, -e + margin}, most[3] = {e - margin, top - margin, e - margin};
+  for (int i = 0; i < 3; i++) {
+    double a = (least[i] - from[i]) / (to[i] - from[i]), b = (most[i] - from[i]) / (to[i] - from[i]);
+    low = fmax(low, fmin(a, b));
+    high = fmin(high, fmax(a, b));
+  }
+  return low < high && low * length(sub(light, p)) > 1e-6;
+}
+
+/* A box that stands on the ground: the shadow of the light's centre is dark right up to it, whatever the light's size. */
+static void test_contact(void **state) {
+  (void)state;
+  enum { SIZE = 128 };
+  static const double sizes[] = {0.02, 0.2, 1, 2};
+  const double e = 0.5, top = 0.8;
+  soup surfaces = {0}, box = {0};
+  soup_box(&surfaces, v3(-e, 0, -e), v3(e, top, e));
+  soup_box(&box, v3(-e, 0, -e), v3(e, top, e));
+  int box_triangles = surfaces.count;
+  soup_patch(&surfaces, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
+  camera k = {.width = SIZE, .height = SIZE, .eye = v3(5, 6, 3), .target = v3(1, 0, 0.3), .up = v3(0, 1, 0), .half_height = 0.25, .near = 1, .far = 30};
+  view v;
+  view_draw(&v, &k, &surfaces);
+  vec centre = v3(-2.1, 3, 0.4);
+  for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
+    for (int geometry = 0; geometry < 2; geometry++) {
+      stage s;
+      stage_open(&s);
+      stage_cast(&s, &box);
+      stage_receive(&s, &v, true);
+      pn_light_desc light = light_at(centre, mul(-1, centre), sizes[i], sizes[i], 512);
+      light.fit = PN_FIT_VISIBLE;
+      float *visibility = stage_visibility(&s, &light, geometry ? "smoothies:geometry=edges" : "smoothies");
+      double texel = 3 * texel_of(&s, true) * length(centre);
+      int dark = 0, close = 0;
+      for (int p = 0; p < SIZE * SIZE; p++) {
+        if (v.shown[p] < box_triangles) continue;
+        vec at = view_point(&v, p % SIZE, p / SIZE);
+        if (!box_hides(at, centre, e, top, texel)) continue;
+        if (visibility[p] != 0) fail_msg("light %g: %g at %g, %g", sizes[i], visibility[p], at.x, at.z);
+        dark++;
+        close += at.x < e + 3 * texel;
+      }
+      assert_true(dark > 500 && close > 20);
+      free(visibility);
+      stage_close(&s);
+    }
+  view_free(&v);
+  soup_free(&surfaces);
+  soup_free(&box);
+}
+
+/* ---- a slanted edge ---- */
+
+/* Where the light that is seen along a line across the edge would begin, if it began at once, in texels; its standard deviation over many
+ * lines. The camera looks straight down with the edge as its vertical. */
+static double deviation(const char *spec, double *width) {
+  enum { ACROSS = 400, ALONG = 160 };
+  const double angle = 0.23;
+  soup ground = {0}, plate = {0};
+  vec x = v3(cos(angle), 0, -sin(angle)), z = v3(sin(angle), 0, cos(angle));
+  soup_patch(&ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
+  soup_patch(&plate, v3(0, h, 0), mul(half_square, x), mul(half_square, z));
+  vec middle = mul(half_square / (1 - h / L), x);
+  camera k = {.width = ACROSS, .height = ALONG, .eye = add(middle, v3(0, 10, 0)), .target = middle, .up = mul(-1, z), .orthographic = true,
+              .half_height = 0.2, .near = 1, .far = 20};
+  view v;
+  stage s;
+  view_draw(&v, &k, &ground);
+  stage_open(&s);
+  stage_cast(&s, &plate);
+  stage_receive(&s, &v, false);
+  pn_light_desc light = light_at(v3(0, L, 0), v3(0, -1, 0), 0.25, 0.25, 256);
+  float *visibility = stage_visibility(&s, &light, spec);
+  double texel = texel_of(&s, false), pixel = 2 * k.half_height / ALONG, sum = 0, squares = 0;
+  for (int y = 0; y < ALONG; y++) {
+    double dark = 0;
+    for (int i = 0; i < ACROSS; i++) dark += (1 - visibility[y * ACROSS + i]) * pixel / texel;
+    sum += dark;
+    squares += dark * dark;
+  }
+  *width = sum / ALONG;
+  free(visibility);
+  stage_close(&s);
+  view_free(&v);
+  soup_free(&ground);
+  soup_free(&plate);
+  return sqrt(fmax(squares / ALONG - sum / ALONG * (sum / ALONG), 0));
+}
+
+static void test_edge(void **state) {
+  (void)state;
+  double at, bicubic = deviation("pcf:filter=bicubic", &at), hard = deviation("hard", &at);
+  print_message("standard deviation, texels: hard %.3f, bicubic pcf %.3f\n", hard, bicubic);
+  static const char *const specs[] = {"smoothies", "smoothies:geometry=edges"};
+  for (int i = 0; i < 2; i++) {
+    double smoothies = deviation(specs[i], &at);
+    print_message("%s %.3f\n", specs[i], smoothies);
+    assert_true(smoothies <= 0.25 * bicubic);
+  }
+}
+
+/* ---- bad meshes ---- */
+
+/* Numbers in range and some shadow, in two frames; the mesh's report comes once. */
+static void check_mesh(const char *name, const soup *casters, bool told) {
+  enum { SIZE = 48 };
+  soup ground = {0};
+  soup_patch(&ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
+  view v;
+  stage s;
+  camera k = from_above(SIZE, 3);
+  view_draw(&v, &k, &ground);
+  for (int geometry = 0; geometry < 2; geometry++) {
+    stage_open(&s);
+    stage_cast(&s, casters);
+    stage_receive(&s, &v, false);
+    pn_light_desc light = light_at(v3(0, L, 0), v3(0, -1, 0), 0.4, 0.4, 128);
+    light.fit = PN_FIT_VISIBLE;
+    int dark = 0, soft = 0;
+    for (int frame = 0; frame < 2; frame++) {
+      float *visibility = stage_visibility(&s, &light, geometry ? "smoothies:geometry=edges" : "smoothies");
+      for (int p = 0; p < SIZE * SIZE; p++) {
+        assert_true(visibility[p] >= 0 && visibility[p] <= 1);
+        dark += visibility[p] == 0;
+        soft += visibility[p] > 0 && visibility[p] < 1;
+      }
+      free(visibility);
+    }
+    if (dark < 20 || soft < 20) fail_msg("%s: %d dark, %d soft", name, dark, soft);
+    assert_int_equal(s.messages[PN_MESSAGE_MESH_EDGES], told);
+    stage_close(&s);
+  }
+  view_free(&v);
+  soup_free(&ground);
+}
+
+static void test_bad_meshes(void **state) {
+  (void)state;
+  soup s = {0};
+  soup_triangle(&s, v3(-0.5, 1, -0.4), v3(0.6, 1.2, 0), v3(0, 1, 0.7));
+  check_mesh("one triangle", &s, true);
+  soup_triangle(&s, v3(-0.5, 1, -0.4), v3(0.6, 1.2, 0), v3(0.1, 2, 0));
+  soup_triangle(&s, v3(-0.5, 1, -0.4), v3(0.6, 1.2, 0), v3(0.3, 1.1, -0.8));
+  check_mesh("three faces at an edge", &s, true);
+  soup_triangle(&s, v3(0, 1, 0), v3(1, 1, 0), v3(2, 1, 0));
+  soup_triangle(&s, v3(0, 1, 0), v3(0, 1, 0), v3(2, 1, 0));
+  soup_triangle(&s, v3(NAN, 1, 0), v3(0, 1, 1), v3(2, 1, 0));
+  check_mesh("triangles without area or numbers", &s, true);
+  soup_free(&s);
+  soup_box(&s, v3(-0.5, 0.5, -0.5), v3(0.5, 1, 0.5));
+  check_mesh("a closed box, every corner an own vertex", &s, false);
+  soup_box(&s, v3(2, 1, -0.1), v3(2.2, L + 3, 0.1));
+  check_mesh("a pillar past the light's plane", &s, false);
+  soup_triangle(&s, v3(-3, L + 1, -3), v3(3, L + 1, 2), v3(0, L + 4, 3));
+  check_mesh("a triangle behind the light", &s, true);
+  soup_triangle(&s, v3(0, L, 0), v3(0.1, L - 0.1, 0), v3(0, L - 0.1, 0.1));
+  check_mesh("a triangle in the light", &s, true);
+  soup_free(&s);
+}
+
+static void draw_nothing(void *user, const pn_caster_pass *pass) {
+  (void)pass;
+  ++*(int *)user;
+}
+
+/* Callbacks have no mesh: told once, and their depth counts as before. */
+static void test_callbacks(void **state) {
+  (void)state;
+  enum { SIZE = 32 };
+  soup ground = {0}, square = {0};
+  soup_patch(&ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
+  soup_patch(&square, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
+  view v;
+  stage s;
+  int calls = 0;
+  const float bounds[6] = {-1, 0.5f, -1, 1, 1, 1};
+  camera k = from_above(SIZE, 2);
+  view_draw(&v, &k, &ground);
+  stage_open(&s);
+  stage_cast(&s, &square);
+  stage_receive(&s, &v, false);
+  assert_ok(pn_casters_draw(s.casters, 3, draw_nothing, &calls, bounds));
+  pn_light_desc light = light_at(v3(0, L, 0), v3(0, -1, 0), 0.4, 0.4, 128);
+  for (int frame = 0; frame < 3; frame++) free(stage_visibility(&s, &light, "smoothies"));
+  assert_int_equal(calls, 3);
+  assert_int_equal(s.messages[PN_MESSAGE_CASTER_MESHES], 1);
+  stage_close(&s);
+  view_free(&v);
+  soup_free(&ground);
+  soup_free(&square);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_square), cmocka_unit_test(test_width),      cmocka_unit_test(test_contact),
+      cmocka_unit_test(test_edge),   cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_callbacks),
+  };
+  return GL_RUN("smoothies", tests);
+}
