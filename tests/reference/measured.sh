@@ -14,7 +14,7 @@ measure() {
     exit 1
   }
   awk '/"label":/ { label = $2; gsub(/"|",?$/, "", label) }
-       /"(mae|max|visited|window|primitives|covered|median|extents|accumulate)":/ { key = $1; gsub(/[":]/, "", key); print label, key, $2 + 0 }' \
+       /"(mae|max|visited|window|primitives|covered|median|depth_map|extents|accumulate)":[ \t]*[0-9]/ { key = $1; gsub(/[":]/, "", key); print label, key, $2 + 0 }' \
     "$work/$name.json" >"$work/$name"
   awk -v name="$name" '$2 == "mae" { label = $1; mae = $3 } $2 == "max" && label != "" { printf "  %-28s %-58s %.4f  max %.3f\n", name, label, mae, $3; label = "" }' \
     "$work/$name"
