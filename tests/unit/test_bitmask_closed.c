@@ -4,45 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stage.h"
-
-/* The light looks down from (0, L, 0); u is x, v is -z. The ground y = 0 only receives. */
-static const double L = 4;
+#include "over_ground.h"
 
 enum { SIZE = 24 };
 
-typedef struct {
-  stage s;
-  view v;
-  soup ground, casters;
-} scene;
+typedef over_ground scene;
 
-static void scene_open(scene *c, double half_height) {
-  camera k = {.width = SIZE, .height = SIZE, .eye = v3(0.013, 10, 0.007), .target = v3(0.013, 0, 0.007), .up = v3(0, 0, -1),
-              .orthographic = true, .half_height = half_height, .near = 1, .far = 20};
-  soup_patch(&c->ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
-  view_draw(&c->v, &k, &c->ground);
-  stage_open(&c->s);
-  if (c->casters.count) stage_cast(&c->s, &c->casters);
-  stage_receive(&c->s, &c->v, true);
-}
-
-static void scene_close(scene *c) {
-  stage_close(&c->s);
-  view_free(&c->v);
-  soup_free(&c->ground);
-  soup_free(&c->casters);
-}
-
-static pn_light_desc light_above(double half_u, double half_v, int map) { return light_at(v3(0, L, 0), v3(0, -1, 0), half_u, half_v, map); }
-
-static double clamp(double x, double low, double high) { return fmin(fmax(x, low), high); }
-
-/* Share of the light's [-half, half] that a plate [-plate, plate] at height h hides from x on the ground. */
-static double hidden(double x, double half, double plate, double h) {
-  double k = h / L, from = (-plate - x * (1 - k)) / k, to = (plate - x * (1 - k)) / k;
-  return (clamp(to, -half, half) - clamp(from, -half, half)) / (2 * half);
-}
+static void scene_open(scene *c, double half_height) { over_ground_open(c, SIZE, half_height); }
 
 /* ---- a plate parallel to the light ---- */
 
@@ -63,24 +31,24 @@ static void check_parallel(int i) {
   scene c = {0};
   soup_patch(&c.casters, v3(0, plate_h, 0), v3(plate, 0, 0), v3(0, 0, plate));
   scene_open(&c, 2.2);
-  pn_light_desc light = light_above(half_u, half_v, 128);
+  pn_light_desc light = light_over_ground(half_u, half_v, 128);
   float *visibility = stage_visibility(&c.s, &light, parallel[i].spec);
   pn_maps_info info;
   assert_ok(pn_light_maps(c.s.light, &info));
-  double texel = fmax(info.s1 - info.s0, info.t1 - info.t0) / info.width * (L - plate_h) * L / plate_h;
+  double texel = fmax(info.s1 - info.s0, info.t1 - info.t0) / info.width * (LIGHT_HEIGHT - plate_h) * LIGHT_HEIGHT / plate_h;
   double moved = 2 * (parallel[i].texels + 1.0 / 128) * texel, row = parallel[i].grid ? 1.0 / parallel[i].grid : 0;
   double allowed = moved / (2 * half_u) + moved / (2 * half_v) + 2 * row + 1e-4, worst = 0;
   int penumbra = 0;
   for (int k = 0; k < SIZE * SIZE; k++) {
     vec p = view_point(&c.v, k % SIZE, k / SIZE);
-    double want = 1 - hidden(p.x, half_u, plate, plate_h) * hidden(p.z, half_v, plate, plate_h);
+    double want = 1 - hidden_by_plate(p.x, half_u, plate, plate_h) * hidden_by_plate(p.z, half_v, plate, plate_h);
     worst = fmax(worst, fabs(visibility[k] - want));
     penumbra += want > 0 && want < 1;
   }
   print_message("%s: off by %.4f, at most %.4f\n", parallel[i].spec, worst, allowed);
   assert_true(penumbra > 50 && worst <= allowed);
   free(visibility);
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
 static void test_parallel(void **state) {
@@ -97,12 +65,12 @@ static void check_watertight(const char *spec, double slope, double turn, int ma
   vec a = v3(cos(turn), 0, sin(turn)), b = v3(-sin(turn), slope, cos(turn));
   soup_patch(&c.casters, v3(0, 2, 0), mul(2.5, a), mul(2.5 / (1 + fabs(slope)), b));
   scene_open(&c, 0.15);
-  pn_light_desc light = light_above(0.4, 0.25, map);
+  pn_light_desc light = light_over_ground(0.4, 0.25, map);
   float *visibility = stage_visibility(&c.s, &light, spec);
   for (int k = 0; k < SIZE * SIZE; k++)
     if (!(visibility[k] >= 0 && visibility[k] <= allowed)) fail_msg("%s, slope %g turned %g, map %d: %g at pixel %d", spec, slope, turn, map, visibility[k], k);
   free(visibility);
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
 static void test_watertight(void **state) {
@@ -131,7 +99,7 @@ static void test_whole_map(void **state) {
     scene c = {0};
     soup_patch(&c.casters, v3(0, 2, 0), v3(1, 0, 0), v3(0, 0, 0.8));
     scene_open(&c, 0.5);
-    pn_light_desc light = light_above(3, 2.5, 2048);
+    pn_light_desc light = light_over_ground(3, 2.5, 2048);
     light.fit = PN_FIT_GIVEN;
     const float box[6] = {-1.02f, 2, -1.02f, 1.02f, 2, 1.02f};
     memcpy(light.fit_bounds, box, sizeof box);
@@ -145,12 +113,12 @@ static void test_whole_map(void **state) {
     double texel = 8 * 2.04 / 2048 * 2 * 1.01, allowed = 2 * texel / 6 + 2 * texel / 5 + 2 * cases[i].row + 1e-3;
     for (int k = 0; k < 16; k++) {
       vec p = view_point(&few, k % 4, k / 4);
-      double want = 1 - hidden(p.x, 3, 1, 2) * hidden(p.z, 2.5, 0.8, 2);
+      double want = 1 - hidden_by_plate(p.x, 3, 1, 2) * hidden_by_plate(p.z, 2.5, 0.8, 2);
       if (!(fabs(visibility[k] - want) <= allowed)) fail_msg("%s: %g, not %g +- %g", cases[i].spec, visibility[k], want, allowed);
     }
     free(visibility);
     view_free(&few);
-    scene_close(&c);
+    over_ground_close(&c);
   }
 }
 
@@ -174,17 +142,17 @@ static void test_casters_at_the_light(void **state) {
   (void)state;
   for (int i = 0; i < 4; i++) {
     scene c = {0};
-    if (i == 0) soup_box(&c.casters, v3(-1, L - 1, -1), v3(1, L + 1, 1));            /* the light is inside */
-    if (i == 1) soup_patch(&c.casters, v3(0, L - 1e-4, 0), v3(1, 0, 0), v3(0, 0, 1)); /* hides all of it */
-    if (i == 2) soup_patch(&c.casters, v3(0, L, 0), v3(1, 0, 0), v3(0, 0, 1));        /* in its plane */
-    if (i == 3) soup_box(&c.casters, v3(-0.1, 0.5, -0.1), v3(0.1, L + 2, 0.1));       /* a pole through it */
+    if (i == 0) soup_box(&c.casters, v3(-1, LIGHT_HEIGHT - 1, -1), v3(1, LIGHT_HEIGHT + 1, 1));            /* the light is inside */
+    if (i == 1) soup_patch(&c.casters, v3(0, LIGHT_HEIGHT - 1e-4, 0), v3(1, 0, 0), v3(0, 0, 1)); /* hides all of it */
+    if (i == 2) soup_patch(&c.casters, v3(0, LIGHT_HEIGHT, 0), v3(1, 0, 0), v3(0, 0, 1));        /* in its plane */
+    if (i == 3) soup_box(&c.casters, v3(-0.1, 0.5, -0.1), v3(0.1, LIGHT_HEIGHT + 2, 0.1));       /* a pole through it */
     scene_open(&c, 2);
     for (int near = 0; near < 2; near++) {
-      pn_light_desc light = light_above(0.5, 0.5, 64);
+      pn_light_desc light = light_over_ground(0.5, 0.5, 64);
       light.near_distance = near ? 1.5f : 0;
       check_sane(&c, &light, 0, 1);
     }
-    scene_close(&c);
+    over_ground_close(&c);
   }
 }
 
@@ -192,12 +160,12 @@ static void test_casters_at_the_light(void **state) {
 static void test_before_the_near_plane(void **state) {
   (void)state;
   scene c = {0};
-  soup_patch(&c.casters, v3(0, L - 0.5, 0), v3(3, 0, 0), v3(0, 0, 3));
+  soup_patch(&c.casters, v3(0, LIGHT_HEIGHT - 0.5, 0), v3(3, 0, 0), v3(0, 0, 3));
   scene_open(&c, 0.5);
-  pn_light_desc light = light_above(0.3, 0.3, 64);
+  pn_light_desc light = light_over_ground(0.3, 0.3, 64);
   light.near_distance = 1.5f;
   check_sane(&c, &light, 0, 0);
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
 static void test_small_maps(void **state) {
@@ -209,11 +177,11 @@ static void test_small_maps(void **state) {
     soup_patch(&c.casters, v3(0.2, 1, 0), v3(0.5, 0.1, 0), v3(0, 0, 0.5));
     scene_open(&c, 2);
     for (int wide = 0; wide < 2; wide++) {
-      pn_light_desc light = light_above(wide ? 6 : 0.5, 0.5, sizes[i][0]);
+      pn_light_desc light = light_over_ground(wide ? 6 : 0.5, 0.5, sizes[i][0]);
       light.map_height = sizes[i][1];
       check_sane(&c, &light, 0, 1);
     }
-    scene_close(&c);
+    over_ground_close(&c);
   }
 }
 
@@ -223,13 +191,13 @@ static void test_empty_maps(void **state) {
   scene c = {0};
   soup_patch(&c.casters, v3(8, 2, 8), v3(0.1, 0, 0), v3(0, 0, 0.1));
   scene_open(&c, 2);
-  pn_light_desc light = light_above(0.5, 0.5, 32);
+  pn_light_desc light = light_over_ground(0.5, 0.5, 32);
   check_sane(&c, &light, 1, 1); /* far aside */
   light.fit = PN_FIT_GIVEN;
   const float box[6] = {-1, 1, -1, 1, 2, 1};
   memcpy(light.fit_bounds, box, sizeof box);
   check_sane(&c, &light, 1, 1); /* outside the map */
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
 int main(void) {

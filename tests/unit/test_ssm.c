@@ -4,39 +4,18 @@
 #include <string.h>
 
 #include "light.h"
-#include "stage.h"
+#include "over_ground.h"
 #include "techniques/ssm/ssm.h"
 
-/* The light looks down from (0, L, 0); u is x, v is -z. The ground y = 0 only receives, unless a test says so. */
-static const double L = 4;
 static const double half_u = 0.5, half_v = 0.3, plate = 0.6, plate_h = 1.5;
 
 enum { SIZE = 48 };
 
-typedef struct {
-  stage s;
-  view v;
-  soup ground, casters;
-} scene;
+typedef over_ground scene;
 
-static void scene_open(scene *c, double half_height) {
-  camera k = {.width = SIZE, .height = SIZE, .eye = v3(0.013, 10, 0.007), .target = v3(0.013, 0, 0.007), .up = v3(0, 0, -1),
-              .orthographic = true, .half_height = half_height, .near = 1, .far = 20};
-  soup_patch(&c->ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
-  view_draw(&c->v, &k, &c->ground);
-  stage_open(&c->s);
-  if (c->casters.count) stage_cast(&c->s, &c->casters);
-  stage_receive(&c->s, &c->v, true);
-}
+static void scene_open(scene *c, double half_height) { over_ground_open(c, SIZE, half_height); }
 
-static void scene_close(scene *c) {
-  stage_close(&c->s);
-  view_free(&c->v);
-  soup_free(&c->ground);
-  soup_free(&c->casters);
-}
-
-static pn_light_desc light_above(int map) { return light_at(v3(0, L, 0), v3(0, -1, 0), half_u, half_v, map); }
+static pn_light_desc light_above(int map) { return light_over_ground(half_u, half_v, map); }
 
 static void add_plate(scene *c) { soup_patch(&c->casters, v3(0, plate_h, 0), v3(plate, 0, 0), v3(0, 0, plate)); }
 
@@ -94,7 +73,7 @@ static void check_lists(const char *spec, int map) {
   assert_true(different <= count / 1000);
   free(gpu);
   pn_free(&c.s.context->gpu, cpu);
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
 static void gpu_and_cpu_lists_agree(void **state) {
@@ -107,16 +86,9 @@ static void gpu_and_cpu_lists_agree(void **state) {
 
 /* ---- a plate parallel to the light ------------------------------------------------------------------------------- */
 
-static double clamp(double x, double low, double high) { return fmin(fmax(x, low), high); }
-
-/* Share of the light's [-half, half] that the plate hides from x on the ground. */
-static double hidden(double x, double half) {
-  double k = plate_h / L, from = (-plate - x * (1 - k)) / k, to = (plate - x * (1 - k)) / k;
-  return (clamp(to, -half, half) - clamp(from, -half, half)) / (2 * half);
-}
-
 static double texel_on_light(const pn_maps_info *info) {
-  return fmax(info->s1 - info->s0, info->t1 - info->t0) / info->width * (L - plate_h) * L / plate_h;
+  return fmax(info->s1 - info->s0, info->t1 - info->t0) / info->width * (LIGHT_HEIGHT - plate_h) * LIGHT_HEIGHT /
+         plate_h;
 }
 
 /* The largest difference from the closed form, and what texels allow: each of two edges an axis moves by half an occluder texel and
@@ -133,18 +105,19 @@ static double check_plate(const char *spec, bool sum_in_16_bits, double *allowed
   assert_ok(pn_light_maps(c.s.light, &info));
   assert_ok(pn_soft_shadow_map_image(c.s.light, c.s.receiver, &soft));
   double moved = 2 * (0.5 + 1.0 / 128) * texel_on_light(&info), worst = 0;
-  double cut = 0.25 * fmax(soft.s1 - soft.s0, soft.t1 - soft.t0) / soft.image.width * (L - plate_h) * L / plate_h * 2;
+  double cut = 0.25 * fmax(soft.s1 - soft.s0, soft.t1 - soft.t0) / soft.image.width * (LIGHT_HEIGHT - plate_h) *
+               LIGHT_HEIGHT / plate_h * 2;
   *allowed = (moved + cut) * (1 / (2 * half_u) + 1 / (2 * half_v)) + 1e-4;
   for (int k = 0; k < SIZE * SIZE; k++) {
     vec p = view_point(&c.v, k % SIZE, k / SIZE);
-    double want = 1 - hidden(p.x, half_u) * hidden(p.z, half_v);
+    double want = 1 - hidden_by_plate(p.x, half_u, plate, plate_h) * hidden_by_plate(p.z, half_v, plate, plate_h);
     worst = fmax(worst, fabs(visibility[k] - want));
     assert_true(visibility[k] >= 0 && visibility[k] <= 1);
   }
   print_message("%s: off by %.4f, texels allow %.4f\n", spec, worst, *allowed);
   assert_int_equal(c.s.messages[PN_MESSAGE_ACCUMULATION], sum_in_16_bits);
   free(visibility);
-  scene_close(&c);
+  over_ground_close(&c);
   return worst;
 }
 
@@ -185,7 +158,7 @@ static void devices_without_float_blending_sum_by_batches(void **state) {
   assert_true(worst > 0 && worst < 0.01);
   free(direct);
   free(batched);
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
 /* Indirect draws are a shortcut: the same micropatches are drawn without them. */
@@ -201,7 +174,7 @@ static void counted_draws_change_nothing(void **state) {
   assert_memory_equal(counted, all, SIZE * SIZE * sizeof *all);
   free(counted);
   free(all);
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
 /* ---- the bound --------------------------------------------------------------------------------------------------- */
@@ -230,7 +203,7 @@ static void bound_holds_overlaps(void **state) {
   for (int k = 0; k < SIZE * SIZE; k++) assert_true(bound[k] == 0);
   free(bound);
   free(visibility);
-  scene_close(&flat);
+  over_ground_close(&flat);
   soup_patch(&step.casters, v3(-0.5, plate_h, 0), v3(0.5, 0, 0), v3(0, 0, 0.6));
   soup_patch(&step.casters, v3(0.5, plate_h + 0.5, 0), v3(0.5, 0, 0), v3(0, 0, 0.6));
   scene_open(&step, 2.2);
@@ -245,7 +218,7 @@ static void bound_holds_overlaps(void **state) {
   assert_true(over < 0.05);
   free(bound);
   free(visibility);
-  scene_close(&step);
+  over_ground_close(&step);
 }
 
 /* ---- trouble ----------------------------------------------------------------------------------------------------- */
@@ -277,7 +250,7 @@ static void bad_scenes_stay_sound(void **state) {
       light = sun_along(v3(0.3, -1, 0.1), 0.1, 0.02, maps[m]);
       check_sound(&c, &light, specs[i]);
     }
-    scene_close(&c);
+    over_ground_close(&c);
   }
 }
 
@@ -297,7 +270,7 @@ static void nothing_to_shadow_is_lit(void **state) {
   pn_soft_shadow_map soft;
   assert_int_equal(pn_soft_shadow_map_image(c.s.light, c.s.receiver, &soft), PN_ERROR_NOT_READY);
   free(visibility);
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
 /* A wide light's map is split into tiles, which overlap by their borders: nothing is counted twice. */
@@ -314,16 +287,18 @@ static void tiles_are_counted_once(void **state) {
     assert_ok(pn_light_maps(c.s.light, &info));
     assert_true(info.tiles > 1);
     assert_ok(pn_soft_shadow_map_image(c.s.light, c.s.receiver, &soft));
-    float *sums = gl_read_texture(soft.image.texture, 0, 0, soft.image.width, soft.image.height, 1), most = 0, least = 1;
+    float *sums = gl_read_texture(soft.image.texture, 0, 0, soft.image.width, soft.image.height, 1), most = 0,
+          least = 1;
     for (int i = 0; i < soft.image.width * soft.image.height; i++) most = fmaxf(most, sums[i]);
     for (int k = 0; k < SIZE * SIZE; k++) least = fminf(least, 1 - visibility[k]);
-    print_message("tiles %d: sums up to %.5f, visibility down to %.5f hidden\n", info.tiles, (double)most, (double)least);
+    print_message("tiles %d: sums up to %.5f, visibility down to %.5f hidden\n", info.tiles, (double)most,
+                  (double)least);
     assert_true(most < 1.001f);
     assert_true(least > 0.999f); /* all of the view is umbra: no gaps between tiles */
     free(sums);
     free(visibility);
   }
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
 int main(void) {

@@ -5,8 +5,8 @@
 uniform highp sampler2DArray pn_range;      // of the occluder maps
 uniform highp sampler2DArray pn_seen_range; // of the receiver map
 uniform ivec4 pn_source;                    // layer in the array, level, layer of the receiver map, map
-uniform ivec4 pn_levels;                    // of the occluders' pyramid, of the receivers', receiver map's width, height
-uniform vec4 pn_share;                      // how far merging may move an edge, as a share of the light's width; 0: none
+uniform ivec4 pn_levels; // of the occluders' pyramid, of the receivers'; receiver map's width, height
+uniform vec4 pn_share;   // how far merging may move an edge, as a share of the light's width; 0: none
 
 // With several maps the light's tiles overlap by their borders: a node belongs to the map its corners lie in.
 bool pn_node_owned(vec4 texels) {
@@ -56,7 +56,8 @@ void pn_node_reach(inout pn_Patch p) {
   vec2 seen = vec2(p.most, max(pn_farthest_seen(), p.above));
   for (int i = 0; i < 2 && p.drawn; i++) {
     vec2 reach = pn_penumbra_extent(pn_extent(0), p.w, seen.y);
-    seen = pn_seen_between(pn_seen_range, pn_source.z, p.rectangle.xy - reach, p.rectangle.zw + reach, size, pn_levels.y);
+    vec2 low = p.rectangle.xy - reach, high = p.rectangle.zw + reach;
+    seen = pn_seen_between(pn_seen_range, pn_source.z, low, high, size, pn_levels.y);
     p.drawn = seen.y <= p.most && seen.x > p.above;
     seen.y = max(seen.y, p.above);
   }

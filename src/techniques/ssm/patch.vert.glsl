@@ -18,7 +18,8 @@ void main() {
   int k = pn_order.x + pn_order.y * (gl_VertexID / 6), corner = gl_VertexID % 6;
   ivec2 entry = ivec2(k % pn_place.x, k / pn_place.x);
   vec4 patch_texels = texelFetch(pn_work, entry, 0), limits = texelFetch(pn_alpha, entry, 0);
-  vec2 low = pn_map_st(0, pn_place.y, patch_texels.xy), high = pn_map_st(0, pn_place.y, patch_texels.xy + patch_texels.z);
+  vec2 low = pn_map_st(0, pn_place.y, patch_texels.xy);
+  vec2 high = pn_map_st(0, pn_place.y, patch_texels.xy + patch_texels.z);
   float w = patch_texels.w;
   pn_rectangle = vec4(low, high);
   pn_served = vec3(w, limits.xy);
@@ -31,7 +32,9 @@ void main() {
   // Soft Shadow Maps, section 3.3: up to where the farthest receiver in reach sees the patch before the light's edge.
   vec2 reach = pn_penumbra_extent(pn_extent(0), w, limits.z);
   bvec2 upper = bvec2(corner == 1 || corner > 3, corner == 2 || corner == 3 || corner == 5);
-  vec2 at = pn_seen_texel(vec2(upper.x ? high.x + reach.x : low.x - reach.x, upper.y ? high.y + reach.y : low.y - reach.y));
+  low -= reach;
+  high += reach;
+  vec2 at = pn_seen_texel(vec2(upper.x ? high.x : low.x, upper.y ? high.y : low.y));
   // A hundredth of a texel more: centres on the border belong to it, whatever way its numbers were rounded.
   at += vec2(upper.x ? 0.01 : -0.01, upper.y ? 0.01 : -0.01);
   gl_Position = vec4(clamp(2.0 * at / vec2(pn_place.zw) - 1.0, -1.0, 1.0), 0.0, 1.0);
