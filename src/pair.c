@@ -1,5 +1,7 @@
 #include "pair.h"
 
+#include <string.h>
+
 pn_pair *pn_pair_find(const pn_object *light, const pn_object *receiver) {
   for (pn_pair *pair = light->context->pairs; pair; pair = pair->next)
     if (pair->light == light && pair->receiver == receiver) return pair;
@@ -19,15 +21,28 @@ pn_pair *pn_pair_get(pn_object *light, pn_object *receiver) {
   return pair;
 }
 
-static void free_pair(pn_gpu *gpu, pn_pair *pair, bool abandon) {
-  pn_texture_free(gpu, &pair->image, abandon);
-  pn_texture_free(gpu, &pair->low, abandon);
+static void free_work(pn_gpu *gpu, pn_pair *pair, bool abandon) {
   pn_texture_free(gpu, &pair->search, abandon);
   pn_texture_free(gpu, &pair->covered, abandon);
   pn_texture_free(gpu, &pair->bound, abandon);
   for (int i = 0; i < PN_WORK_MAX; i++) pn_texture_free(gpu, &pair->work[i], abandon);
   pn_receiver_map_free(gpu, &pair->seen, abandon);
   pn_buffer_free(gpu, &pair->arguments, abandon);
+}
+
+void pn_pair_begin(pn_gpu *gpu, pn_pair *pair, const void *technique) {
+  if (pair->technique != technique) {
+    free_work(gpu, pair, false);
+    pair->warned = false;
+    pair->technique = technique;
+  }
+  memset(&pair->soft, 0, sizeof pair->soft);
+}
+
+static void free_pair(pn_gpu *gpu, pn_pair *pair, bool abandon) {
+  free_work(gpu, pair, abandon);
+  pn_texture_free(gpu, &pair->image, abandon);
+  pn_texture_free(gpu, &pair->low, abandon);
   pn_clock_free(gpu, &pair->clock, abandon);
   pn_free(gpu, pair);
 }

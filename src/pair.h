@@ -9,6 +9,7 @@ enum { PN_WORK_MAX = 10 };
 
 typedef struct pn_pair {
   pn_object *light, *receiver;
+  const void *technique;        /* of the last draw: whose work there is */
   pn_texture image;             /* the result */
   pn_texture low;               /* at reduced resolution, before it is brought up */
   pn_texture work[PN_WORK_MAX]; /* a technique's own */
@@ -28,6 +29,8 @@ typedef struct pn_pair {
 pn_pair *pn_pair_find(const pn_object *light, const pn_object *receiver);
 /* Finds or makes it; NULL when out of memory. */
 pn_pair *pn_pair_get(pn_object *light, pn_object *receiver);
+/* Before a technique draws: what another one left is freed. */
+void pn_pair_begin(pn_gpu *gpu, pn_pair *pair, const void *technique);
 /* Frees every pair that the object is part of. */
 void pn_pairs_drop(const pn_object *object, bool abandon);
 

@@ -23,7 +23,7 @@ static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pn_pair
   pn_gpu *gpu = pn_light_gpu(light);
   const pn_technique_class *technique = light->technique;
   pn_result result = PN_OK;
-  memset(&pair->soft, 0, sizeof pair->soft);
+  pn_pair_begin(gpu, pair, technique);
   if (light->maps.fit.empty) {
     result = fill_with_light(gpu, target, receiver->desc.width, receiver->desc.height);
     pn_clock_mark(gpu, &pair->clock, "visibility");

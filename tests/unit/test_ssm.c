@@ -301,6 +301,23 @@ static void tiles_are_counted_once(void **state) {
   over_ground_close(&c);
 }
 
+/* What a technique keeps for a pair goes when the light takes another. */
+static void other_techniques_free_its_memory(void **state) {
+  (void)state;
+  scene c = {0};
+  add_clutter(&c);
+  scene_open(&c, 2.2);
+  pn_light_desc light = light_above(64);
+  free(stage_visibility(&c.s, &light, "ssm")); /* what the receiver keeps for itself stays */
+  free(stage_visibility(&c.s, &light, "hard"));
+  size_t before = c.s.context->gpu.memory;
+  free(stage_visibility(&c.s, &light, "ssm"));
+  assert_true(c.s.context->gpu.memory > before + 100000);
+  free(stage_visibility(&c.s, &light, "hard"));
+  assert_int_equal(c.s.context->gpu.memory, before);
+  over_ground_close(&c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(gpu_and_cpu_lists_agree),
@@ -311,6 +328,7 @@ int main(void) {
       cmocka_unit_test(bound_holds_overlaps),
       cmocka_unit_test(bad_scenes_stay_sound),
       cmocka_unit_test(nothing_to_shadow_is_lit),
+      cmocka_unit_test(other_techniques_free_its_memory),
       cmocka_unit_test(tiles_are_counted_once),
   };
   return GL_RUN("ssm", tests);
