@@ -63,11 +63,14 @@ start = time.time()
 p.send_signal(signal.SIGINT)
 status = p.wait(10)
 assert status == 130, "status %r" % status
-assert time.time() - start < 1, "took %.1f s" % (time.time() - start)
+# A sanitizer's own memory takes the system its time to take back.
+assert time.time() - start < float(sys.argv[2]), "took %.1f s" % (time.time() - start)
 assert p.stderr.read() == b"", "said something"
 PY
 if command -v python3 >/dev/null; then
-  python3 interrupt.py "$program" || fail "interrupt"
+  patience=1
+  ldd "$program" | grep -q libasan && patience=8
+  python3 interrupt.py "$program" $patience || fail "interrupt"
   rm -f interrupt.py
   only ""
 fi
