@@ -59,20 +59,6 @@ static void want(const double *values, pn_maps_want *out) {
 
 /* ---- programs ---------------------------------------------------------------------------------------------------- */
 
-/* What is summed up: the shadow, the bound of its error, or how many micropatches there are. */
-typedef enum { SUM_SHADOW, SUM_BOUND, SUM_COUNT } sum_kind;
-
-static pn_result patch_program(pn_gpu *gpu, sum_kind kind, const pn_program **out) {
-  static const char *const defines[] = {"PN_SUM 0\n", "PN_SUM 1\n", "PN_SUM 2\n"};
-  pn_program_key key = {"techniques/ssm/patch.vert.glsl", "techniques/ssm/patch.frag.glsl", NULL, defines[kind]};
-  return pn_program_get(gpu, &key, out);
-}
-
-static pn_result add_program(pn_gpu *gpu, const pn_program **out) {
-  pn_program_key key = {"shaders/screen.vert.glsl", "techniques/ssm/add.frag.glsl", NULL, ""};
-  return pn_program_get(gpu, &key, out);
-}
-
 static pn_result lookup_program(pn_gpu *gpu, const char *receiver_defines, bool bound, const pn_program **out) {
   char defines[PN_RECEIVER_DEFINES + 16];
   snprintf(defines, sizeof defines, "%sPN_BOUND %d\n", receiver_defines, bound);
@@ -84,8 +70,7 @@ static pn_result prepare(pn_gpu *gpu, const double *values) {
   static const char *const receivers[] = {"PN_NORMALS 0\nPN_MASK 0\n", "PN_NORMALS 1\nPN_MASK 0\n"};
   const pn_program *program;
   pn_result result = ssm_gpu_prepare(gpu);
-  if (result == PN_OK) result = patch_program(gpu, SUM_SHADOW, &program);
-  if (result == PN_OK) result = add_program(gpu, &program);
+  if (result == PN_OK) result = ssm_scatter_prepare(gpu);
   for (int i = 0; i < 2 && result == PN_OK; i++) result = lookup_program(gpu, receivers[i], false, &program);
   return result == PN_OK ? pn_receiver_map_prepare(gpu, (int)values[LAYERS]) : result;
 }
@@ -131,188 +116,14 @@ static bool place(const pn_visibility_request *r, const pn_region *seen, pn_rece
   return true;
 }
 
-/* ---- accumulation ------------------------------------------------------------------------------------------------ */
-
-typedef struct {
-  const pn_visibility_request *r;
-  int accumulate;
-  sum_kind kind;
-  const pn_texture *soft;
-  int sum;              /* by batches: which of two images holds it */
-  pn_attachment target; /* the layer of it that is summed up */
-} scattering;
-
-static bool by_batches(const scattering *s) { return s->accumulate == ACCUMULATE_BATCHED && s->kind == SUM_SHADOW; }
-
-static pn_result begin_target(const scattering *s, pn_attachment target, pn_blend blend, bool clear) {
-  pn_pass pass = {.color = {target}, .width = s->soft->width, .height = s->soft->height, .blend = blend};
-  pn_result result = pn_pass_begin(s->r->gpu, &pass);
-  static const GLfloat zero[4] = {0, 0, 0, 0};
-  if (result == PN_OK && clear) GL(s->r->gpu, ClearBufferfv)(GL_COLOR, 0, zero);
-  return result;
-}
-
-/* Everything set for drawing entries of the list that lies in the work textures. */
-static pn_result begin_patches(const scattering *s, const ssm_list *list, pn_attachment target, bool clear, int first,
-                               int step) {
-  pn_gpu *gpu = s->r->gpu;
-  const pn_texture *work = s->r->pair->work;
-  const pn_program *program;
-  pn_result result = patch_program(gpu, s->kind, &program);
-  if (result == PN_OK) result = begin_target(s, target, PN_BLEND_ADD, clear);
-  if (result != PN_OK) return result;
-  GL(gpu, UseProgram)(program->id);
-  GLint order[4] = {first, step, 0, 0};
-  GLint place[4] = {work[SSM_LIST].width, list->map, s->soft->width, s->soft->height};
-  GLint layer[4] = {list->seen_layer, list->map * s->r->maps->layers + list->layer, 0, 0};
-  GL(gpu, Uniform4iv)(pn_uniform(program, "pn_order"), 1, order);
-  GL(gpu, Uniform4iv)(pn_uniform(program, "pn_place"), 1, place);
-  GL(gpu, Uniform4iv)(pn_uniform(program, "pn_layer"), 1, layer);
-  pn_receiver_map_bind(gpu, &s->r->pair->seen, program);
-  pn_bind_texture(gpu, PN_UNIT_RANGE, s->r->maps->range.target, s->r->maps->range.id, true);
-  pn_bind_texture(gpu, PN_UNIT_WORK, work[SSM_LIST].target, work[SSM_LIST].id, false);
-  pn_bind_texture(gpu, PN_UNIT_ALPHA, work[SSM_LIMITS].target, work[SSM_LIMITS].id, false);
-  return PN_OK;
-}
-
-/* Entries first, first + step, ... of the list. */
-typedef struct {
-  int first, step, count;
-} entry_range;
-
-static pn_result draw_entries(const scattering *s, const ssm_list *list, pn_attachment target, bool clear,
-                              entry_range range) {
-  pn_result result = begin_patches(s, list, target, clear, range.first, range.step);
-  if (result != PN_OK) return result;
-  GL(s->r->gpu, BindVertexArray)(s->r->gpu->vertex_array);
-  GL(s->r->gpu, DrawArrays)(GL_TRIANGLES, 0, 6 * range.count);
-  return PN_OK;
-}
-
-/* The batch and the sum so far, into the other of two images: nothing is blended. */
-static pn_result add_batch(scattering *s) {
-  pn_gpu *gpu = s->r->gpu;
-  const pn_texture *work = s->r->pair->work, *batch = &work[SSM_BATCH];
-  const pn_texture *from = &work[SSM_SUM + s->sum], *to = &work[SSM_SUM + !s->sum];
-  const pn_program *program;
-  pn_result result = add_program(gpu, &program);
-  if (result == PN_OK) result = begin_target(s, (pn_attachment){to->id, to->target, 0, 0}, PN_BLEND_NONE, false);
-  if (result != PN_OK) return result;
-  GL(gpu, UseProgram)(program->id);
-  pn_bind_texture(gpu, PN_UNIT_WORK, from->target, from->id, false);
-  pn_bind_texture(gpu, PN_UNIT_ALPHA, batch->target, batch->id, false);
-  pn_draw_screen(gpu);
-  s->sum = !s->sum;
-  return PN_OK;
-}
-
-/* Appendix A's way round 16 bits: about sqrt(M) micropatches are summed up aside before they meet the rest. Neighbours
- * in the list cover the same texels, so a batch takes every sqrt(M)-th: what meets in a texel of it is few. */
-static pn_result draw_batches(scattering *s, const ssm_list *list, int total, int count) {
-  const pn_texture *batch = &s->r->pair->work[SSM_BATCH];
-  pn_attachment aside = {batch->id, batch->target, 0, 0};
-  int step = (int)ceil(sqrt(total));
-  pn_result result = PN_OK;
-  for (int first = 0; first < step && first < count && result == PN_OK; first++) {
-    entry_range range = {first, step, (count - first + step - 1) / step};
-    result = draw_entries(s, list, aside, true, range);
-    if (result == PN_OK) result = add_batch(s);
-  }
-  return result;
-}
-
-/* What lies in the list's textures: total micropatches in all lists, or -1 where only the GPU knows. */
-static pn_result draw_list(scattering *s, const ssm_list *list, int total) {
-  const pn_visibility_request *r = s->r;
-  int size = ssm_list_size(r->maps), left = total - list->first;
-  if (total >= 0 && by_batches(s)) return draw_batches(s, list, total, left < size ? left : size);
-  if (total >= 0) return draw_entries(s, list, s->target, false, (entry_range){0, 1, left < size ? left : size});
-  pn_result result = begin_patches(s, list, s->target, false, 0, 1);
-  if (result == PN_OK) pn_draw_counted(r->gpu, &r->pair->arguments, SSM_DRAW_PATCHES, 6 * size);
-  return result;
-}
-
-static void mark(const scattering *s, const char *stage) {
-  pn_clock_mark(s->r->gpu, &s->r->pair->clock, s->kind ? "debug" : stage);
-}
-
-static pn_result scatter_gpu(scattering *s, ssm_list *list) {
-  int total = -1, most = ssm_list_most(s->r->maps);
-  pn_result result = ssm_gpu_count(list);
-  if (result == PN_OK && by_batches(s)) result = ssm_gpu_total(list, &total);
-  if (total >= 0) most = total;
-  for (; list->first < most && result == PN_OK; list->first += ssm_list_size(s->r->maps)) {
-    result = ssm_gpu_list(list);
-    mark(s, "extents");
-    if (result == PN_OK) result = draw_list(s, list, total);
-    mark(s, "accumulate");
-  }
-  return result;
-}
-
-static pn_result scatter_cpu(scattering *s, ssm_list *list) {
-  float *entries;
-  int total;
-  pn_result result = ssm_cpu_list(list, &entries, &total);
-  for (; list->first < total && result == PN_OK; list->first += ssm_list_size(s->r->maps)) {
-    result = ssm_cpu_upload(list, entries, total);
-    mark(s, "extents");
-    if (result == PN_OK) result = draw_list(s, list, total);
-    mark(s, "accumulate");
-  }
-  pn_free(s->r->gpu, entries);
-  return result;
-}
-
-static pn_result begin_sum(scattering *s) {
-  const pn_texture *sum = &s->r->pair->work[SSM_SUM];
-  s->sum = 0;
-  pn_attachment target = by_batches(s) ? (pn_attachment){sum->id, sum->target, 0, 0} : s->target;
-  return begin_target(s, target, PN_BLEND_NONE, true);
-}
-
-static void end_sum(const scattering *s) {
-  pn_gpu *gpu = s->r->gpu;
-  if (!by_batches(s)) return;
-  pn_read_from(gpu, &s->r->pair->work[SSM_SUM + s->sum], 0, 0);
-  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
-  GL(gpu, BindTexture)(s->soft->target, s->soft->id);
-  GL(gpu, CopyTexSubImage3D)(s->soft->target, 0, 0, 0, s->target.layer, 0, 0, s->soft->width, s->soft->height);
-}
-
-/* One side's shadow on one layer of receivers. */
-static pn_result scatter(scattering *s, int side, int seen_layer) {
-  const pn_maps *maps = s->r->maps;
-  s->target = (pn_attachment){s->soft->id, s->soft->target, 0, side * s->r->pair->seen.want.layers + seen_layer};
-  pn_result result = begin_sum(s);
-  for (int map = 0; map < maps->fit.tiles && result == PN_OK; map++) {
-    ssm_list list = {.request = s->r,
-                     .map = map,
-                     .layer = side,
-                     .seen_layer = seen_layer,
-                     .share = s->kind == SUM_BOUND ? 0 : s->r->values[MERGE] / 100};
-    result = s->r->values[EXTENTS] == EXTENTS_CPU ? scatter_cpu(s, &list) : scatter_gpu(s, &list);
-  }
-  if (result == PN_OK) end_sum(s);
-  return result;
-}
-
-static pn_result scatter_all(scattering *s) {
-  pn_result result = PN_OK;
-  for (int side = 0; side < s->r->maps->layers; side++)
-    for (int layer = 0; layer < s->r->pair->seen.want.layers && result == PN_OK; layer++)
-      result = scatter(s, side, layer);
-  return result;
-}
-
 /* ---- the lookup -------------------------------------------------------------------------------------------------- */
 
-static pn_result look_up(const scattering *s, pn_attachment target) {
+static pn_result look_up(const ssm_scattering *s, pn_attachment target) {
   const pn_visibility_request *r = s->r;
   char defines[PN_RECEIVER_DEFINES];
   const pn_program *program;
   pn_receiver_defines(r->receiver, defines);
-  pn_result result = lookup_program(r->gpu, defines, s->kind == SUM_BOUND, &program);
+  pn_result result = lookup_program(r->gpu, defines, s->kind == SSM_SUM_BOUND, &program);
   if (result != PN_OK) return result;
   pn_pass pass = {.color = {target}, .width = r->receiver->desc.width, .height = r->receiver->desc.height};
   result = pn_screen_begin(r->gpu, &pass, program);
@@ -355,7 +166,7 @@ static int accumulation(const pn_visibility_request *r) {
 
 /* ---- what it leaves for the host --------------------------------------------------------------------------------- */
 
-static void hand_out(const scattering *s) {
+static void hand_out(const ssm_scattering *s) {
   pn_pair *pair = s->r->pair;
   const pn_receiver_map_want *w = &pair->seen.want;
   pair->soft = (pn_soft_shadow_map){.sides = s->r->maps->layers,
@@ -367,17 +178,25 @@ static void hand_out(const scattering *s) {
   pn_texture_image(s->soft, &pair->soft.image);
 }
 
+static ssm_scattering start(const pn_visibility_request *r, ssm_sum_kind kind, const pn_texture *soft) {
+  return (ssm_scattering){.r = r,
+                          .kind = kind,
+                          .soft = soft,
+                          .on_cpu = r->values[EXTENTS] == EXTENTS_CPU,
+                          .share = kind == SSM_SUM_BOUND ? 0 : r->values[MERGE] / 100};
+}
+
 /* Eq. 3 instead of the shadow: how far the sums may be off because neighbouring micropatches overlap or part. */
 static pn_result draw_bound(const pn_visibility_request *r) {
   pn_texture *soft = &r->pair->work[SSM_BOUND], *image = &r->pair->bound;
   const pn_receiver_map_want *w = &r->pair->seen.want;
   const pn_receiver_desc *view = &r->receiver->desc;
-  scattering s = {.r = r, .kind = SUM_BOUND, .soft = soft};
+  ssm_scattering s = start(r, SSM_SUM_BOUND, soft);
   pn_result result = pn_texture_shape(r->gpu, soft, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
   if (result == PN_OK) result = pn_texture_shape(r->gpu, image, GL_R32F, view->width, view->height, 0, 1);
-  if (result == PN_OK) result = scatter_all(&s);
+  if (result == PN_OK) result = ssm_scatter(&s);
   if (result == PN_OK) result = look_up(&s, (pn_attachment){image->id, image->target, 0, 0});
-  mark(&s, "bound");
+  ssm_mark(&s, "bound");
   return result;
 }
 
@@ -385,10 +204,10 @@ static pn_result draw_bound(const pn_visibility_request *r) {
 static pn_result draw_counts(const pn_visibility_request *r) {
   pn_texture *covered = &r->pair->covered;
   const pn_receiver_map_want *w = &r->pair->seen.want;
-  scattering s = {.r = r, .kind = SUM_COUNT, .soft = covered};
+  ssm_scattering s = start(r, SSM_SUM_COUNT, covered);
   pn_result result = pn_texture_shape(r->gpu, covered, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
-  if (result == PN_OK) result = scatter_all(&s);
-  mark(&s, "counts");
+  if (result == PN_OK) result = ssm_scatter(&s);
+  ssm_mark(&s, "counts");
   return result;
 }
 
@@ -417,14 +236,16 @@ static pn_result draw(const pn_visibility_request *r) {
   pn_result result = find_receivers(r, &seen);
   if (result != PN_OK) return result;
   if (!place(r, &seen, &where)) return all_lit(r);
-  scattering s = {.r = r, .accumulate = accumulation(r), .soft = &r->pair->work[SSM_SOFT]};
+  int accumulate = accumulation(r);
+  ssm_scattering s = start(r, SSM_SUM_SHADOW, &r->pair->work[SSM_SOFT]);
+  s.by_batches = accumulate == ACCUMULATE_BATCHED;
   if (r->values[ACCUMULATE] == ACCUMULATE_FP16) warn_of_loss(r, &seen);
-  result = shape(r, &where, s.accumulate);
+  result = shape(r, &where, accumulate);
   if (result == PN_OK) result = pn_receiver_map_draw(r->receiver, r->frame, &where, &r->pair->seen);
-  mark(&s, "receiver_map");
-  if (result == PN_OK) result = scatter_all(&s);
+  ssm_mark(&s, "receiver_map");
+  if (result == PN_OK) result = ssm_scatter(&s);
   if (result == PN_OK) result = look_up(&s, r->target);
-  mark(&s, "visibility");
+  ssm_mark(&s, "visibility");
   if (result == PN_OK) hand_out(&s);
   if (result == PN_OK && r->gpu->debug & PN_DEBUG_SEARCH) result = draw_counts(r);
   if (result == PN_OK && r->gpu->debug & PN_DEBUG_BOUND) result = draw_bound(r);

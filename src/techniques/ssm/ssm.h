@@ -41,4 +41,24 @@ pn_result ssm_cpu_list(const ssm_list *list, float **entries, int *count);
 /* Puts entries from list->first on where the GPU's list lies. */
 pn_result ssm_cpu_upload(const ssm_list *list, const float *entries, int count);
 
+/* What is summed up: the shadow, the bound of its error, or how many micropatches there are. */
+typedef enum { SSM_SUM_SHADOW, SSM_SUM_BOUND, SSM_SUM_COUNT } ssm_sum_kind;
+
+typedef struct {
+  const pn_visibility_request *r;
+  bool by_batches; /* of the shadow only */
+  bool on_cpu;     /* where extents are found */
+  double share;    /* as ssm_list's */
+  ssm_sum_kind kind;
+  const pn_texture *soft; /* the soft shadow map: sides, and in each a layer for each of the receivers */
+  int sum;                /* by batches: which of two images holds it */
+  pn_attachment target;   /* the layer of it that is summed up */
+} ssm_scattering;
+
+/* Sums up all sides for all layers of receivers into soft. (scatter.c) */
+pn_result ssm_scatter(ssm_scattering *scattering);
+pn_result ssm_scatter_prepare(pn_gpu *gpu);
+/* What was drawn since the last mark was this stage. */
+void ssm_mark(const ssm_scattering *scattering, const char *stage);
+
 #endif
