@@ -9,7 +9,9 @@
 
 static void on_message(void *user, pn_log_level level, int message_id, const char *text) {
   struct client *client = user;
-  if (level == PN_LOG_ERROR) snprintf(client->reason, sizeof client->reason, "%s", text);
+  static const char advice[] = "; a smaller --map, size or number of layers takes less";
+  if (level == PN_LOG_ERROR)
+    snprintf(client->reason, sizeof client->reason, "%s%s", text, message_id == PN_MESSAGE_GPU_MEMORY ? advice : "");
   else if (client->warming) return;
   else if (level == PN_LOG_WARNING) warning("%s", text);
   else note("%s: %s", pn_message_name(message_id), text);

@@ -459,8 +459,8 @@ PN_API pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver
  *                  green = blocks visited, blue = primitives covered, alpha = texels in the search windows; costs a
  *                  second colour target. Of technique `ssm`: "covered", in the layers of the soft shadow map, how many
  *                  micropatches came by each texel; costs another drawing
- * PN_DEBUG_BOUND   "bound", of technique `ssm`: how far visibility may be off because neighbouring micropatches overlap
- *                  or part (Soft Shadow Maps, Eq. 3); costs a drawing of every micropatch, unmerged */
+ * PN_DEBUG_BOUND   "bound", of technique `ssm` with merge=0: how far visibility may be off because neighbouring
+ *                  micropatches overlap or part (Soft Shadow Maps, Eq. 3); costs another drawing of them all */
 enum { PN_DEBUG_SEARCH = 1, PN_DEBUG_BOUND = 2 };
 PN_API pn_result pn_debug(pn_context *context, int flags);
 

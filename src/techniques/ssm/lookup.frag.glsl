@@ -1,10 +1,11 @@
 // The soft shadow map projected onto what the camera sees.
 #include "shaders/precision.glsl"
-#include "search/receiver.glsl"
+#include "search/lookup.glsl"
 #include "receiver/surface.glsl"
 #include "maps/receiver_map.glsl"
 #include "search/horizon.glsl"
 
+uniform highp sampler2DArray pn_maps; // the occluder maps
 uniform highp sampler2DArray pn_seen; // the receiver map
 uniform highp sampler2DArray pn_work; // the soft shadow map: for each side, a layer for each of the receiver map's
 uniform ivec4 pn_layer;               // layers of the receiver map, sides
@@ -19,9 +20,10 @@ float pn_hidden_at(ivec2 texel, int layer) {
 }
 
 // Bilinear over the four texels around the receiver, each by how near its surface passes the receiver: one is as good
-// as on it within a texel's thickness, and of no use past four. Only where none is near enough, in front of a surface
-// that no layer holds, do the others speak.
-float pn_hidden(vec3 m, bool sun) {
+// as on it within a texel's thickness, and of no use past four. Only on a surface that no layer holds, which lies behind others
+// as the light sees it, the rest speak, and the hard shadow of the first side where it is darker.
+float pn_hidden(pn_Receiver r, bool sun) {
+  vec3 m = r.m;
   vec2 at = pn_seen_texel(m.xy) - 0.5;
   ivec2 base = ivec2(floor(at)), last = textureSize(pn_seen, 0).xy - 1;
   vec2 f = at - vec2(base);
@@ -42,7 +44,8 @@ float pn_hidden(vec3 m, bool sun) {
       if (abs(away) < 4.0) near += term;
     }
   }
-  return near.y > 0.0 ? near.x / near.y : far.y > 0.0 ? far.x / far.y : 0.0;
+  float rest = max(far.y > 0.0 ? far.x / far.y : 0.0, pn_bilinear_blocks(0, pn_maps, r, m.xy));
+  return near.y > 0.0 ? near.x / near.y : rest;
 }
 
 void main() {
@@ -53,7 +56,7 @@ void main() {
     pn_Receiver r = pn_receiver(0, s.p, s.error, s.n, s.sigma);
     if (!pn_unlit(0, r)) {
       float above = pn_area_above(pn_extent(0), r.n.xy, r.k);
-      if (above > 0.0) hidden = min(pn_hidden(r.m, pn_is_sun(0)) / above, 1.0);
+      if (above > 0.0) hidden = min(pn_hidden(r, pn_is_sun(0)) / above, 1.0);
     }
   }
 #if PN_BOUND

@@ -133,6 +133,7 @@ static pn_result look_up(const ssm_scattering *s, pn_attachment target) {
   pn_receiver_map_bind(r->gpu, &r->pair->seen, program);
   GL(r->gpu, Uniform4iv)(pn_uniform(program, "pn_layer"), 1, layers);
   pn_bind_texture(r->gpu, PN_UNIT_WORK, s->soft->target, s->soft->id, false);
+  pn_bind_texture(r->gpu, PN_UNIT_MAPS, r->maps->depth.target, r->maps->depth.id, false);
   pn_draw_screen(r->gpu);
   return PN_OK;
 }
@@ -179,11 +180,8 @@ static void hand_out(const ssm_scattering *s) {
 }
 
 static ssm_scattering start(const pn_visibility_request *r, ssm_sum_kind kind, const pn_texture *soft) {
-  return (ssm_scattering){.r = r,
-                          .kind = kind,
-                          .soft = soft,
-                          .on_cpu = r->values[EXTENTS] == EXTENTS_CPU,
-                          .share = kind == SSM_SUM_BOUND ? 0 : r->values[MERGE] / 100};
+  return (ssm_scattering){
+      .r = r, .kind = kind, .soft = soft, .on_cpu = r->values[EXTENTS] == EXTENTS_CPU, .share = r->values[MERGE] / 100};
 }
 
 /* Eq. 3 instead of the shadow: how far the sums may be off because neighbouring micropatches overlap or part. */
@@ -248,7 +246,8 @@ static pn_result draw(const pn_visibility_request *r) {
   ssm_mark(&s, "visibility");
   if (result == PN_OK) hand_out(&s);
   if (result == PN_OK && r->gpu->debug & PN_DEBUG_SEARCH) result = draw_counts(r);
-  if (result == PN_OK && r->gpu->debug & PN_DEBUG_BOUND) result = draw_bound(r);
+  bool bound = r->gpu->debug & PN_DEBUG_BOUND && r->values[MERGE] == 0; /* Eq. 3 speaks of single texels */
+  if (result == PN_OK && bound) result = draw_bound(r);
   return result;
 }
 
