@@ -12,20 +12,13 @@ static bool is_alive(const pn_context *context, const void *object) {
   return false;
 }
 
-static pn_result fill_with_light(pn_gpu *gpu, pn_attachment target, int width, int height) {
-  pn_pass pass = {.color = {target}, .width = width, .height = height};
-  pn_result result = pn_pass_begin(gpu, &pass);
-  if (result == PN_OK) pn_fill(gpu, width, height, 1);
-  return result;
-}
-
 static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pn_pair *pair, pn_attachment target) {
   pn_gpu *gpu = pn_light_gpu(light);
   const pn_technique_class *technique = light->technique;
   pn_result result = PN_OK;
   pn_pair_begin(gpu, pair, technique);
   if (light->maps.fit.empty) {
-    result = fill_with_light(gpu, target, receiver->desc.width, receiver->desc.height);
+    result = pn_fill(gpu, target, receiver->desc.width, receiver->desc.height, 1);
     pn_clock_mark(gpu, &pair->clock, "visibility");
     return result;
   }

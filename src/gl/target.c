@@ -218,12 +218,16 @@ void pn_draw_screen(pn_gpu *gpu) {
   GL(gpu, DrawArrays)(GL_TRIANGLES, 0, 3);
 }
 
-void pn_fill(pn_gpu *gpu, int width, int height, float value) {
+pn_result pn_fill(pn_gpu *gpu, pn_attachment target, int width, int height, float value) {
+  pn_pass pass = {.color = {target}, .width = width, .height = height};
+  pn_result result = pn_pass_begin(gpu, &pass);
+  if (result != PN_OK) return result;
   const GLfloat values[4] = {value, value, value, 1};
   pn_set_switch(gpu, GL_SCISSOR_TEST, true);
   pn_set_scissor(gpu, 0, 0, width, height);
   GL(gpu, ClearBufferfv)(GL_COLOR, 0, values);
   pn_set_switch(gpu, GL_SCISSOR_TEST, false);
+  return PN_OK;
 }
 
 pn_result pn_screen_begin(pn_gpu *gpu, const pn_pass *pass, const pn_program *program) {
@@ -267,6 +271,13 @@ void pn_read_from(pn_gpu *gpu, const pn_texture *texture, int level, int layer) 
   (GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture->id, level, layer);
   else GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture->id, level);
   GL(gpu, ReadBuffer)(GL_COLOR_ATTACHMENT0);
+}
+
+void pn_copy_to_layer(pn_gpu *gpu, const pn_texture *from, const pn_texture *to, int layer) {
+  pn_read_from(gpu, from, 0, 0);
+  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
+  GL(gpu, BindTexture)(to->target, to->id);
+  GL(gpu, CopyTexSubImage3D)(to->target, 0, 0, 0, layer, 0, 0, from->width, from->height);
 }
 
 enum { ARGUMENT_BYTES = 16 }; /* four unsigned integers: GL's DrawArraysIndirectCommand */

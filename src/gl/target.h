@@ -29,6 +29,10 @@ void pn_bind_texture(pn_gpu *gpu, int unit, GLenum target, pn_gl texture, bool o
 /* Makes level and layer of a colour texture what the next read of pixels reads. */
 void pn_read_from(pn_gpu *gpu, const pn_texture *texture, int level, int layer);
 
+/* A colour texture into a layer of an array. Images of an array that are made from one another are drawn aside and copied
+ * in: reading one layer while drawing another is undefined in GL 3.3. */
+void pn_copy_to_layer(pn_gpu *gpu, const pn_texture *from, const pn_texture *to, int layer);
+
 /* One image to draw into: level 0.. of a texture, and a layer when it is an array. */
 typedef struct {
   pn_gl texture;
@@ -62,9 +66,8 @@ pn_result pn_pass_begin(pn_gpu *gpu, const pn_pass *pass);
 void pn_pass_limit(pn_gpu *gpu, const pn_part *part);
 /* A triangle that covers the target. The program and its uniforms are set by the caller. */
 void pn_draw_screen(pn_gpu *gpu);
-/* One value in the pass's first colour image: the host's own texture may be larger than the view, only that is
- * written. */
-void pn_fill(pn_gpu *gpu, int width, int height, float value);
+/* One value in an image: the host's own texture may be larger than the view, only that is written. */
+pn_result pn_fill(pn_gpu *gpu, pn_attachment target, int width, int height, float value);
 /* pn_pass_begin, the program in use: the usual start of a full-screen pass. */
 pn_result pn_screen_begin(pn_gpu *gpu, const pn_pass *pass, const pn_program *program);
 

@@ -134,7 +134,7 @@ pn_result pn_range_reduce(pn_gpu *gpu, const pn_texture *range) { return reduce_
 
 /* A stack's levels are layers of one array, which GL 3.3 does not let a pass read and draw at once: each is drawn
  * aside and copied in. */
-static pn_result draw_stack(const range_step *s, pn_texture *aside, int levels) {
+static pn_result draw_stack(const range_step *s, const pn_texture *aside, int levels) {
   pn_gpu *gpu = s->gpu;
   const pn_texture *range = &s->maps->range;
   const pn_program *program;
@@ -145,11 +145,7 @@ static pn_result draw_stack(const range_step *s, pn_texture *aside, int levels) 
   GL(gpu, Uniform4iv)(pn_uniform(program, "pn_place"), 1, place);
   pn_bind_texture(gpu, PN_UNIT_RANGE, range->target, range->id, false);
   pn_draw_screen(gpu);
-  GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, gpu->framebuffer);
-  GL(gpu, ReadBuffer)(GL_COLOR_ATTACHMENT0);
-  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_RANGE);
-  GL(gpu, CopyTexSubImage3D)
-  (range->target, 0, 0, 0, s->layer * levels + s->level, 0, 0, range->width, range->height);
+  pn_copy_to_layer(gpu, aside, range, s->layer * levels + s->level);
   return PN_OK;
 }
 

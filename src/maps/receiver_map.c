@@ -31,14 +31,6 @@ static void set_bounds(pn_gpu *gpu, const pn_receiver_map_want *w, const pn_prog
   GL(gpu, Uniform4fv)(pn_uniform(program, "pn_seen_bounds"), 1, bounds);
 }
 
-/* Drawn aside and copied in: reading one layer of an array while drawing another is undefined in GL 3.3. */
-static void copy_layer(pn_gpu *gpu, const pn_receiver_map *map, int layer) {
-  pn_read_from(gpu, &map->aside, 0, 0);
-  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_SEEN);
-  GL(gpu, BindTexture)(map->layers.target, map->layers.id);
-  GL(gpu, CopyTexSubImage3D)(map->layers.target, 0, 0, 0, layer, 0, 0, map->aside.width, map->aside.height);
-}
-
 /* The pixels that can show what lies in the map's bounds: x, y, width, height. All of the view where the bounds reach
  * behind the camera, or behind the light. */
 static void find_pixels(const pn_receiver *receiver, const pn_frame *frame, const pn_receiver_map_want *w, int out[4]) {
@@ -99,7 +91,7 @@ static pn_result draw_layer(pn_receiver *receiver, const pn_frame *frame, pn_rec
   GL(gpu, Uniform4iv)(pn_uniform(program, "pn_pixels"), 1, pixels);
   GL(gpu, BindVertexArray)(gpu->vertex_array);
   if (pixels[2] > 0 && pixels[3] > 0) GL(gpu, DrawArrays)(GL_POINTS, 0, pixels[2] * pixels[3]);
-  copy_layer(gpu, map, layer);
+  pn_copy_to_layer(gpu, &map->aside, &map->layers, layer);
   return PN_OK;
 }
 

@@ -150,15 +150,6 @@ static pn_result begin_sum(ssm_scattering *s) {
   return begin_target(s, target, PN_BLEND_NONE, true);
 }
 
-static void end_sum(const ssm_scattering *s) {
-  pn_gpu *gpu = s->r->gpu;
-  if (!s->by_batches) return;
-  pn_read_from(gpu, &s->r->pair->work[SSM_SUM + s->sum], 0, 0);
-  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
-  GL(gpu, BindTexture)(s->soft->target, s->soft->id);
-  GL(gpu, CopyTexSubImage3D)(s->soft->target, 0, 0, 0, s->target.layer, 0, 0, s->soft->width, s->soft->height);
-}
-
 /* One side's shadow on one layer of receivers. */
 static pn_result scatter(ssm_scattering *s, int side, int seen_layer) {
   const pn_maps *maps = s->r->maps;
@@ -168,7 +159,8 @@ static pn_result scatter(ssm_scattering *s, int side, int seen_layer) {
     ssm_list list = {.request = s->r, .map = map, .layer = side, .seen_layer = seen_layer, .share = s->share};
     result = s->on_cpu ? scatter_cpu(s, &list) : scatter_gpu(s, &list);
   }
-  if (result == PN_OK) end_sum(s);
+  if (result == PN_OK && s->by_batches)
+    pn_copy_to_layer(s->r->gpu, &s->r->pair->work[SSM_SUM + s->sum], s->soft, s->target.layer);
   return result;
 }
 

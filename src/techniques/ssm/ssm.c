@@ -194,7 +194,7 @@ static pn_result draw_bound(const pn_visibility_request *r) {
   if (result == PN_OK) result = pn_texture_shape(r->gpu, image, GL_R32F, view->width, view->height, 0, 1);
   if (result == PN_OK) result = ssm_scatter(&s);
   if (result == PN_OK) result = look_up(&s, (pn_attachment){image->id, image->target, 0, 0});
-  ssm_mark(&s, "bound");
+  ssm_mark(&s, "debug");
   return result;
 }
 
@@ -205,7 +205,6 @@ static pn_result draw_counts(const pn_visibility_request *r) {
   ssm_scattering s = start(r, SSM_SUM_COUNT, covered);
   pn_result result = pn_texture_shape(r->gpu, covered, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
   if (result == PN_OK) result = ssm_scatter(&s);
-  ssm_mark(&s, "counts");
   return result;
 }
 
@@ -221,19 +220,13 @@ static pn_result shape(const pn_visibility_request *r, const pn_receiver_map_wan
   return result == PN_OK ? ssm_gpu_shape(r) : result;
 }
 
-static pn_result all_lit(const pn_visibility_request *r) {
-  pn_pass pass = {.color = {r->target}, .width = r->receiver->desc.width, .height = r->receiver->desc.height};
-  pn_result result = pn_pass_begin(r->gpu, &pass);
-  if (result == PN_OK) pn_fill(r->gpu, r->receiver->desc.width, r->receiver->desc.height, 1);
-  return result;
-}
-
 static pn_result draw(const pn_visibility_request *r) {
   pn_region seen;
   pn_receiver_map_want where;
   pn_result result = find_receivers(r, &seen);
   if (result != PN_OK) return result;
-  if (!place(r, &seen, &where)) return all_lit(r);
+  const pn_receiver_desc *view = &r->receiver->desc;
+  if (!place(r, &seen, &where)) return pn_fill(r->gpu, r->target, view->width, view->height, 1);
   int accumulate = accumulation(r);
   ssm_scattering s = start(r, SSM_SUM_SHADOW, &r->pair->work[SSM_SOFT]);
   s.by_batches = accumulate == ACCUMULATE_BATCHED;
