@@ -148,6 +148,11 @@ static int read_visibility_scale(struct options *o, const char *name, const char
   return status;
 }
 
+static int read_normals(struct options *o, const char *name, const char *value) {
+  static const char *const words[] = {"given", "depth", NULL};
+  return read_choice(name, value, words, &o->setup.normals_from_depth);
+}
+
 static int read_device(struct options *o, const char *name, const char *value) {
   o->device = value;
   int number;
@@ -233,6 +238,8 @@ static const struct option_row table[OPTION_COUNT] = {
                     "what the depth map is fitted to, default visible"},
     [OPTION_VISIBILITY_SCALE] = {"visibility-scale", 0, "1|2|4", DRAWING, read_visibility_scale,
                                  "compute visibility at full, half, quarter resolution"},
+    [OPTION_NORMALS] = {"normals", 0, "given|depth", DRAWING, read_normals,
+                        "exact normals for the library, or none, as most hosts have it: default given"},
     [OPTION_SPLIT] = {"split", 0, NULL, DRAWING, read_flag, "the model only casts, the ground only receives"},
     [OPTION_DEVICE] = {"device", 0, "auto|software|N", DRAWING | COMMAND_INFO, read_device,
                        "which GL device; penumbra info numbers them"},

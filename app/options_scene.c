@@ -41,6 +41,7 @@ void options_apply(const struct options *o, struct setup *setup) {
   APPLY(OPTION_FIT, fit);
   APPLY(OPTION_FIT, fit_bounds);
   APPLY(OPTION_VISIBILITY_SCALE, visibility_scale);
+  APPLY(OPTION_NORMALS, normals_from_depth);
 #undef APPLY
 }
 

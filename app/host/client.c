@@ -61,20 +61,20 @@ static int add_casters(struct client *client, const struct gpu_scene *gpu) {
   return status;
 }
 
-static void describe_receiver(const struct gbuffer *g, int scale, pn_receiver_desc *out) {
+static void describe_receiver(const struct gbuffer *g, const struct setup *setup, pn_receiver_desc *out) {
   pn_receiver_desc desc = PN_RECEIVER_DEFAULTS;
   desc.depth_texture = g->depth;
-  desc.normal_texture = g->normal;
+  desc.normal_texture = setup->normals_from_depth ? 0 : g->normal;
   desc.mask_texture = g->mask;
-  desc.scale = scale;
+  desc.scale = setup->visibility_scale;
   desc.format = PN_FORMAT_R32F;
   memcpy(desc.view, g->view, sizeof desc.view);
   memcpy(desc.projection, g->projection, sizeof desc.projection);
   *out = desc;
 }
 
-static int set_receiver(struct client *client, const struct gbuffer *g, int scale) {
-  describe_receiver(g, scale, &client->view);
+static int set_receiver(struct client *client, const struct gbuffer *g, const struct setup *setup) {
+  describe_receiver(g, setup, &client->view);
   int status = client_check(client, pn_receiver_create(client->context, &client->receiver));
   return status ? status : client_check(client, pn_receiver_set(client->receiver, &client->view));
 }
@@ -89,7 +89,7 @@ int client_create(const struct gpu_scene *gpu, const struct gbuffer *g, pn_state
   desc.shader_directory = getenv("PENUMBRA_SHADERS");
   int status = client_check(client, pn_context_create(&desc, &client->context));
   if (!status) status = add_casters(client, gpu);
-  if (!status) status = set_receiver(client, g, gpu->scene->setup.visibility_scale);
+  if (!status) status = set_receiver(client, g, &gpu->scene->setup);
   if (status) client_free(&client);
   *out = client;
   return status;

@@ -63,6 +63,7 @@ struct setup {
   int map[2];  /* depth-map texels; the library's default when 0 */
   int split;   /* the model only casts, the ground only receives */
   int visibility_scale;
+  int normals_from_depth; /* the library is handed none and finds tangent planes itself */
   pn_fit fit;
   double fit_bounds[6];
   enum ground ground; /* how the scene was loaded: see scene_request */

@@ -57,6 +57,7 @@ cJSON *scene_to_json(const struct scene *scene) {
   cJSON_AddItemToObject(object, "map", json_pair(setup->map));
   cJSON_AddBoolToObject(object, "split", setup->split);
   cJSON_AddNumberToObject(object, "visibility_scale", setup->visibility_scale);
+  cJSON_AddStringToObject(object, "normals", setup->normals_from_depth ? "depth" : "given");
   if (setup->fit == PN_FIT_GIVEN) cJSON_AddItemToObject(object, "fit", json_numbers(setup->fit_bounds, 6));
   else cJSON_AddStringToObject(object, "fit", setup->fit == PN_FIT_CASTERS ? "casters" : "visible");
   cJSON_AddStringToObject(object, "ground", grounds[setup->ground]);
@@ -72,11 +73,11 @@ static char *read_text(const char *path, size_t *size) {
     input_error("--setup %s: %s", path, strerror(errno));
     return NULL;
   }
-  const char *problem = fstat(fileno(file), &info) != 0           ? strerror(errno)
-                        : S_ISDIR(info.st_mode)                   ? "is a directory, not a JSON file"
-                        : !S_ISREG(info.st_mode)                  ? "is not a regular file"
-                        : info.st_size > (off_t)SETUP_FILE_MAX    ? "is larger than 64 MB, too large for a set-up"
-                                                                  : NULL;
+  const char *problem = fstat(fileno(file), &info) != 0        ? strerror(errno)
+                        : S_ISDIR(info.st_mode)                ? "is a directory, not a JSON file"
+                        : !S_ISREG(info.st_mode)               ? "is not a regular file"
+                        : info.st_size > (off_t)SETUP_FILE_MAX ? "is larger than 64 MB, too large for a set-up"
+                                                               : NULL;
   if (problem) input_error("--setup %s: %s", path, problem);
   if (!problem && !(text = malloc((size_t)info.st_size + 1))) memory_error();
   if (text) {
@@ -87,8 +88,9 @@ static char *read_text(const char *path, size_t *size) {
   return text;
 }
 
-static const char *const scene_keys[] = {"name",  "triangles",        "light", "camera", "size", "map",
-                                         "split", "visibility_scale", "fit",   "ground", "up",   NULL};
+static const char *const scene_keys[] = {"name",  "triangles",        "light",   "camera", "size",   "map",
+                                         "split", "visibility_scale", "normals", "fit",    "ground", "up",
+                                         NULL};
 static const char *const light_keys[] = {"type", "center", "direction", "u", "v", "size", "target", "up", NULL};
 static const char *const camera_keys[] = {"position", "target", "up", "fov", NULL};
 
@@ -275,5 +277,8 @@ int setup_apply_json(const char *path, const cJSON *json, struct setup *setup) {
     if (s == 1 || s == 2 || s == 4) setup->visibility_scale = (int)s;
     else complain(&r, "visibility_scale", "1, 2 or 4");
   }
+  static const char *const normals[] = {"given", "depth", NULL};
+  int from_depth = get_word(&r, json, "normals", normals, "\"given\" or \"depth\"");
+  if (from_depth >= 0) setup->normals_from_depth = from_depth;
   return r.status;
 }

@@ -76,6 +76,7 @@ for v in 0 -5 180 nan x; do rejected 2 '--fov: ' render ok.obj --fov $v; done
 rejected 2 '--light: .*rectangle or sun' render ok.obj --light disk
 rejected 2 '--ground: .*on or off' render ok.obj --ground maybe
 rejected 2 '--up: .*y or z' render ok.obj --up x
+rejected 2 '--normals: .*given or depth' render ok.obj --normals none
 rejected 2 '--visibility-scale: .*1, 2 or 4' render ok.obj --visibility-scale 3
 rejected 2 '--fit: ' render ok.obj --fit tight
 rejected 2 '--fit: .*must not exceed' render ok.obj --fit 1,0,0,0,1,1
