@@ -41,4 +41,4 @@ foreach(path IN LISTS shaders)
 endforeach()
 
 file(WRITE "${OUTPUT}" "/* Generated from the .glsl files. */\n#include \"gl/embedded.h\"\n\n${arrays}
-const pn_embedded_shader pn_embedded_shaders[] = {\n${entries}  {0, 0}};\nconst int pn_embedded_shader_count = ${count};\n")
+const pni_embedded_shader pni_embedded_shaders[] = {\n${entries}  {0, 0}};\nconst int pni_embedded_shader_count = ${count};\n")

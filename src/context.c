@@ -19,10 +19,10 @@ pn_result pn_context_create(const pn_context_desc *desc, pn_context **out) {
     return PN_ERROR_OUT_OF_MEMORY;
   }
   memset(context, 0, sizeof *context);
-  pn_result result = pn_gpu_open(&context->gpu, desc);
+  pn_result result = pni_gpu_open(&context->gpu, desc);
   if (result != PN_OK) {
-    pn_gpu gpu = context->gpu;
-    pn_free(&gpu, context);
+    pni_gpu gpu = context->gpu;
+    pni_free(&gpu, context);
     return result;
   }
   *out = context;
@@ -35,11 +35,11 @@ static void free_objects(pn_context *context, bool abandon) {
 
 static void free_forward_texts(pn_context *context) {
   while (context->forward_texts) {
-    pn_forward_text *text = context->forward_texts;
+    pni_forward_text *text = context->forward_texts;
     context->forward_texts = text->next;
-    pn_free(&context->gpu, text->key);
-    pn_free(&context->gpu, text->text);
-    pn_free(&context->gpu, text);
+    pni_free(&context->gpu, text->key);
+    pni_free(&context->gpu, text->text);
+    pni_free(&context->gpu, text);
   }
 }
 
@@ -49,10 +49,10 @@ static void close_context(pn_context **handle, bool abandon) {
   *handle = NULL;
   free_objects(context, abandon);
   free_forward_texts(context);
-  pn_buffer_free(&context->gpu, &context->forward_block, abandon);
-  pn_gpu_close(&context->gpu, abandon);
-  pn_gpu gpu = context->gpu; /* the allocator outlives the memory it frees */
-  pn_free(&gpu, context);
+  pni_buffer_free(&context->gpu, &context->forward_block, abandon);
+  pni_gpu_close(&context->gpu, abandon);
+  pni_gpu gpu = context->gpu; /* the allocator outlives the memory it frees */
+  pni_free(&gpu, context);
 }
 
 void pn_context_destroy(pn_context **context) { close_context(context, false); }
@@ -61,8 +61,8 @@ void pn_context_abandon(pn_context **context) { close_context(context, true); }
 
 /* ---- objects ----------------------------------------------------------------------------------------------------- */
 
-void *pn_object_create(pn_context *context, void (*release)(pn_object *, bool), size_t bytes) {
-  pn_object *object = pn_allocate_zero(&context->gpu, bytes);
+void *pni_object_create(pn_context *context, void (*release)(pni_object *, bool), size_t bytes) {
+  pni_object *object = pni_allocate_zero(&context->gpu, bytes);
   if (!object) return NULL;
   object->free = release;
   object->context = context;
@@ -72,7 +72,7 @@ void *pn_object_create(pn_context *context, void (*release)(pn_object *, bool), 
   return object;
 }
 
-void pn_object_unlink(pn_object *object) {
+void pni_object_unlink(pni_object *object) {
   if (object->next) object->next->previous = object->previous;
   if (object->previous) object->previous->next = object->next;
   else object->context->objects = object->next;
@@ -80,13 +80,13 @@ void pn_object_unlink(pn_object *object) {
 
 /* ---- the host's GL state ----------------------------------------------------------------------------------------- */
 
-void pn_enter(pn_context *context) {
-  if (context->gpu.desc.state == PN_STATE_RESTORE) pn_state_save(&context->gpu, &context->saved);
+void pni_enter(pn_context *context) {
+  if (context->gpu.desc.state == PN_STATE_RESTORE) pni_state_save(&context->gpu, &context->saved);
 }
 
-pn_result pn_leave(pn_context *context, pn_result result) {
-  if (context->gpu.desc.state == PN_STATE_RESTORE) pn_state_restore(&context->gpu, &context->saved);
-  if (context->gpu.desc.state == PN_STATE_RESET) pn_state_reset(&context->gpu);
+pn_result pni_leave(pn_context *context, pn_result result) {
+  if (context->gpu.desc.state == PN_STATE_RESTORE) pni_state_restore(&context->gpu, &context->saved);
+  if (context->gpu.desc.state == PN_STATE_RESET) pni_state_reset(&context->gpu);
   return result;
 }
 
@@ -94,11 +94,11 @@ static pn_result scope(pn_context *context, bool begin) {
   if (!context) return PN_ERROR_ARGUMENT;
   if (context->gpu.desc.state != PN_STATE_SCOPED) return PN_OK;
   if (context->scope == begin)
-    return pn_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_STATE_SCOPE, "%s",
-                   begin ? "pn_state_begin was called twice" : "pn_state_end without pn_state_begin");
+    return pni_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_STATE_SCOPE, "%s",
+                    begin ? "pn_state_begin was called twice" : "pn_state_end without pn_state_begin");
   context->scope = begin;
-  if (begin) pn_state_save(&context->gpu, &context->saved);
-  else pn_state_restore(&context->gpu, &context->saved);
+  if (begin) pni_state_save(&context->gpu, &context->saved);
+  else pni_state_restore(&context->gpu, &context->saved);
   return PN_OK;
 }
 
@@ -109,7 +109,7 @@ pn_result pn_state_end(pn_context *context) { return scope(context, false); }
 
 pn_result pn_reload_shaders(pn_context *context) {
   if (!context) return PN_ERROR_ARGUMENT;
-  pn_programs_free(&context->gpu, false);
+  pni_programs_free(&context->gpu, false);
   return PN_OK;
 }
 
@@ -129,7 +129,7 @@ static int at_most(int value, int limit) { return value < limit ? value : limit;
 
 pn_result pn_context_info(const pn_context *context, pn_info *out) {
   if (!context || !out) return PN_ERROR_ARGUMENT;
-  const pn_gpu *gpu = &context->gpu;
+  const pni_gpu *gpu = &context->gpu;
   *out = (pn_info){
       .vendor = (const char *)GL(gpu, GetString)(GL_VENDOR),
       .renderer = (const char *)GL(gpu, GetString)(GL_RENDERER),
@@ -152,7 +152,7 @@ int pn_feature(const pn_context *context, int index, const char **name, int *in_
       {"robustness", "a lost context is noticed by its reset status; without: by failing calls"},
   };
   if (!context || index < 0 || index >= (int)(sizeof features / sizeof *features)) return 0;
-  const pn_capabilities *can = &context->gpu.can;
+  const pni_capabilities *can = &context->gpu.can;
   const int used[] = {!can->software, can->clip_control, can->robustness};
   if (name) *name = features[index].name;
   if (in_use) *in_use = used[index];

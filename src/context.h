@@ -7,34 +7,34 @@
 #include "gl/target.h"
 
 /* Every object is in its context's list, and knows how it is freed, so that the context can free them all. */
-typedef struct pn_object {
+typedef struct pni_object {
   pn_context *context;
-  void (*free)(struct pn_object *object, bool abandon); /* abandon: without GL */
-  struct pn_object *previous, *next;
-} pn_object;
+  void (*free)(struct pni_object *object, bool abandon); /* abandon: without GL */
+  struct pni_object *previous, *next;
+} pni_object;
 
-typedef struct pn_forward_text {
+typedef struct pni_forward_text {
   char *key, *text;
-  struct pn_forward_text *next;
-} pn_forward_text;
+  struct pni_forward_text *next;
+} pni_forward_text;
 
 struct pn_context {
-  pn_gpu gpu;
-  pn_object *objects;
-  bool scope;        /* between pn_state_begin and pn_state_end */
-  pn_gl_state saved; /* the host's state, while the library is at work */
-  struct pn_pair *pairs;
-  pn_forward_text *forward_texts;
-  pn_buffer forward_block;
+  pni_gpu gpu;
+  pni_object *objects;
+  bool scope;         /* between pn_state_begin and pn_state_end */
+  pni_gl_state saved; /* the host's state, while the library is at work */
+  struct pni_pair *pairs;
+  pni_forward_text *forward_texts;
+  pni_buffer forward_block;
 };
 
-/* Every public function that touches GL does so between these two. pn_leave returns result, so that a function ends
+/* Every public function that touches GL does so between these two. pni_leave returns result, so that a function ends
  * in one line. */
-void pn_enter(pn_context *context);
-pn_result pn_leave(pn_context *context, pn_result result);
+void pni_enter(pn_context *context);
+pn_result pni_leave(pn_context *context, pn_result result);
 
 /* Zeroed; NULL after a message. */
-void *pn_object_create(pn_context *context, void (*release)(pn_object *, bool), size_t bytes);
-void pn_object_unlink(pn_object *object);
+void *pni_object_create(pn_context *context, void (*release)(pni_object *, bool), size_t bytes);
+void pni_object_unlink(pni_object *object);
 
 #endif

@@ -2,17 +2,17 @@
 
 #include <string.h>
 
-pn_pair *pn_pair_find(const pn_object *light, const pn_object *receiver) {
-  for (pn_pair *pair = light->context->pairs; pair; pair = pair->next)
+pni_pair *pni_pair_find(const pni_object *light, const pni_object *receiver) {
+  for (pni_pair *pair = light->context->pairs; pair; pair = pair->next)
     if (pair->light == light && pair->receiver == receiver) return pair;
   return NULL;
 }
 
-pn_pair *pn_pair_get(pn_object *light, pn_object *receiver) {
-  pn_pair *pair = pn_pair_find(light, receiver);
+pni_pair *pni_pair_get(pni_object *light, pni_object *receiver) {
+  pni_pair *pair = pni_pair_find(light, receiver);
   if (pair) return pair;
   pn_context *context = light->context;
-  pair = pn_allocate_zero(&context->gpu, sizeof *pair);
+  pair = pni_allocate_zero(&context->gpu, sizeof *pair);
   if (!pair) return NULL;
   pair->light = light;
   pair->receiver = receiver;
@@ -21,16 +21,16 @@ pn_pair *pn_pair_get(pn_object *light, pn_object *receiver) {
   return pair;
 }
 
-static void free_work(pn_gpu *gpu, pn_pair *pair, bool abandon) {
-  pn_texture_free(gpu, &pair->search, abandon);
-  pn_texture_free(gpu, &pair->covered, abandon);
-  pn_texture_free(gpu, &pair->bound, abandon);
-  for (int i = 0; i < PN_WORK_MAX; i++) pn_texture_free(gpu, &pair->work[i], abandon);
-  pn_receiver_map_free(gpu, &pair->seen, abandon);
-  pn_buffer_free(gpu, &pair->arguments, abandon);
+static void free_work(pni_gpu *gpu, pni_pair *pair, bool abandon) {
+  pni_texture_free(gpu, &pair->search, abandon);
+  pni_texture_free(gpu, &pair->covered, abandon);
+  pni_texture_free(gpu, &pair->bound, abandon);
+  for (int i = 0; i < PNI_WORK_MAX; i++) pni_texture_free(gpu, &pair->work[i], abandon);
+  pni_receiver_map_free(gpu, &pair->seen, abandon);
+  pni_buffer_free(gpu, &pair->arguments, abandon);
 }
 
-void pn_pair_begin(pn_gpu *gpu, pn_pair *pair, const void *technique) {
+void pni_pair_begin(pni_gpu *gpu, pni_pair *pair, const void *technique) {
   if (pair->technique != technique) {
     free_work(gpu, pair, false);
     pair->warned = false;
@@ -39,17 +39,17 @@ void pn_pair_begin(pn_gpu *gpu, pn_pair *pair, const void *technique) {
   memset(&pair->soft, 0, sizeof pair->soft);
 }
 
-static void free_pair(pn_gpu *gpu, pn_pair *pair, bool abandon) {
+static void free_pair(pni_gpu *gpu, pni_pair *pair, bool abandon) {
   free_work(gpu, pair, abandon);
-  pn_texture_free(gpu, &pair->image, abandon);
-  pn_texture_free(gpu, &pair->low, abandon);
-  pn_clock_free(gpu, &pair->clock, abandon);
-  pn_free(gpu, pair);
+  pni_texture_free(gpu, &pair->image, abandon);
+  pni_texture_free(gpu, &pair->low, abandon);
+  pni_clock_free(gpu, &pair->clock, abandon);
+  pni_free(gpu, pair);
 }
 
-void pn_pairs_drop(const pn_object *object, bool abandon) {
-  for (pn_pair **link = &object->context->pairs; *link;) {
-    pn_pair *pair = *link;
+void pni_pairs_drop(const pni_object *object, bool abandon) {
+  for (pni_pair **link = &object->context->pairs; *link;) {
+    pni_pair *pair = *link;
     if (pair->light != object && pair->receiver != object) {
       link = &pair->next;
       continue;

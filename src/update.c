@@ -8,91 +8,91 @@
 static pn_result find_frusta(pn_light *light, pn_receiver *const *receivers, int count) {
   bool wanted = light->desc.fit == PN_FIT_VISIBLE || light->desc.fit == PN_FIT_FRUSTUM;
   light->has_visible = wanted && count > 0;
-  light->visible = pn_region_empty();
+  light->visible = pni_region_empty();
   for (int i = 0; i < count && light->has_visible; i++) {
     if (!receivers[i] || !receivers[i]->set)
-      return pn_fail(pn_light_gpu(light), PN_ERROR_NOT_READY, PN_MESSAGE_RECEIVER_UNSET,
-                     "visible receiver %d was never set", i);
-    pn_receiver_frustum(receivers[i], &light->frame, &light->visible);
+      return pni_fail(pni_light_gpu(light), PN_ERROR_NOT_READY, PN_MESSAGE_RECEIVER_UNSET,
+                      "visible receiver %d was never set", i);
+    pni_receiver_frustum(receivers[i], &light->frame, &light->visible);
   }
   return PN_OK;
 }
 
 /* What PN_FIT_VISIBLE looks at: the surfaces themselves. */
 static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, int count) {
-  light->visible = pn_region_empty();
+  light->visible = pni_region_empty();
   pn_result result = PN_OK;
   for (int i = 0; i < count && result == PN_OK; i++)
-    result = pn_receiver_bounds(receivers[i], &light->frame, &light->visible);
-  pn_clock_mark(pn_light_gpu(light), &light->clock, "fit");
+    result = pni_receiver_bounds(receivers[i], &light->frame, &light->visible);
+  pni_clock_mark(pni_light_gpu(light), &light->clock, "fit");
   return result;
 }
 
-static pn_fit_request fit_request(const pn_light *light, const pn_maps_want *want) {
+static pni_fit_request fit_request(const pn_light *light, const pni_maps_want *want) {
   const pn_light_desc *d = &light->desc;
-  return (pn_fit_request){.frame = &light->frame,
-                          .near_distance = d->near_distance,
-                          .range = d->range,
-                          .width = d->map_width,
-                          .height = d->map_height,
-                          .given = d->fit == PN_FIT_GIVEN ? d->fit_bounds : NULL,
-                          .visible = light->has_visible ? &light->visible : NULL,
-                          .reach = want->reach,
-                          .reach_width = want->reach_width};
+  return (pni_fit_request){.frame = &light->frame,
+                           .near_distance = d->near_distance,
+                           .range = d->range,
+                           .width = d->map_width,
+                           .height = d->map_height,
+                           .given = d->fit == PN_FIT_GIVEN ? d->fit_bounds : NULL,
+                           .visible = light->has_visible ? &light->visible : NULL,
+                           .reach = want->reach,
+                           .reach_width = want->reach_width};
 }
 
-static void fit_light(pn_light *light, const pn_maps_want *want) {
-  pn_fit_request request = fit_request(light, want);
-  pn_fit_maps(light->casters, light->groups, &request, &light->maps.fit);
+static void fit_light(pn_light *light, const pni_maps_want *want) {
+  pni_fit_request request = fit_request(light, want);
+  pni_fit_maps(light->casters, light->groups, &request, &light->maps.fit);
   if (!light->maps.fit.clamped || light->warned_angle) return;
   light->warned_angle = true;
-  pn_note(pn_light_gpu(light), PN_LOG_WARNING, PN_MESSAGE_LIGHT_ANGLE,
-          "the map would open past 170 degrees; casters beyond are left out");
+  pni_note(pni_light_gpu(light), PN_LOG_WARNING, PN_MESSAGE_LIGHT_ANGLE,
+           "the map would open past 170 degrees; casters beyond are left out");
 }
 
-static pn_map_draw tile_draw(const pn_light *light, const pn_maps_want *want, int tile) {
-  const pn_fit_result *fit = &light->maps.fit;
-  pn_fit_request request = fit_request(light, want);
-  pn_map_draw draw = {.frame = &light->frame,
-                      .casters = light->casters,
-                      .groups = light->groups,
-                      .map = tile,
-                      .w_near = fit->w_near,
-                      .w_far = fit->w_far};
+static pni_map_draw tile_draw(const pn_light *light, const pni_maps_want *want, int tile) {
+  const pni_fit_result *fit = &light->maps.fit;
+  pni_fit_request request = fit_request(light, want);
+  pni_map_draw draw = {.frame = &light->frame,
+                       .casters = light->casters,
+                       .groups = light->groups,
+                       .map = tile,
+                       .w_near = fit->w_near,
+                       .w_far = fit->w_far};
   memcpy(draw.bounds, fit->tile[tile], sizeof draw.bounds);
-  if (want->focus > 0) draw.later = pn_fit_focus(&request, fit, tile, want->focus);
+  if (want->focus > 0) draw.later = pni_fit_focus(&request, fit, tile, want->focus);
   return draw;
 }
 
-static pn_result draw_maps(pn_light *light, const pn_maps_want *want) {
-  pn_gpu *gpu = pn_light_gpu(light);
-  pn_maps *maps = &light->maps;
+static pn_result draw_maps(pn_light *light, const pni_maps_want *want) {
+  pni_gpu *gpu = pni_light_gpu(light);
+  pni_maps *maps = &light->maps;
   int width = light->desc.map_width, height = light->desc.map_height;
-  pn_result result = pn_maps_shape(gpu, maps, want, maps->fit.tiles, width, height);
+  pn_result result = pni_maps_shape(gpu, maps, want, maps->fit.tiles, width, height);
   if (result != PN_OK) return result;
-  pn_block_frame(&maps->block, &light->frame, gpu, maps->fit.tiles, maps->layers, width, height);
+  pni_block_frame(&maps->block, &light->frame, gpu, maps->fit.tiles, maps->layers, width, height);
   maps->block.extent[3] = (float)maps->fit.w_reach;
   for (int tile = 0; tile < maps->fit.tiles && result == PN_OK; tile++) {
-    pn_map_draw draw = tile_draw(light, want, tile);
-    pn_block_map(&maps->block, gpu, &draw, width, height);
-    result = pn_maps_draw(gpu, maps, &draw);
+    pni_map_draw draw = tile_draw(light, want, tile);
+    pni_block_map(&maps->block, gpu, &draw, width, height);
+    result = pni_maps_draw(gpu, maps, &draw);
   }
-  pn_clock_mark(gpu, &light->clock, "depth_map");
+  pni_clock_mark(gpu, &light->clock, "depth_map");
   if (result != PN_OK || !want->range.structure) return result;
-  result = pn_light_bind_block(light);
-  const pn_technique_class *technique = light->technique;
-  bool own = want->range.structure == PN_RANGE_OWN;
-  pn_build_request request = {gpu, &light->frame, light->values, maps, light->casters, light->groups};
-  if (result == PN_OK) result = own ? technique->build(&request) : pn_range_build(gpu, maps);
-  pn_clock_mark(gpu, &light->clock, own ? technique->stage : "range");
+  result = pni_light_bind_block(light);
+  const pni_technique_class *technique = light->technique;
+  bool own = want->range.structure == PNI_RANGE_OWN;
+  pni_build_request request = {gpu, &light->frame, light->values, maps, light->casters, light->groups};
+  if (result == PN_OK) result = own ? technique->build(&request) : pni_range_build(gpu, maps);
+  pni_clock_mark(gpu, &light->clock, own ? technique->stage : "range");
   return result;
 }
 
 static pn_result update_maps(pn_light *light, pn_receiver *const *visible, int visible_count) {
-  pn_result result = pn_gpu_check_lost(pn_light_gpu(light));
+  pn_result result = pni_gpu_check_lost(pni_light_gpu(light));
   if (result == PN_OK) result = find_frusta(light, visible, visible_count);
   if (result != PN_OK) return result;
-  pn_maps_want want;
+  pni_maps_want want;
   light->technique->want(light->values, &want);
   fit_light(light, &want);
   if (light->desc.fit == PN_FIT_VISIBLE && light->has_visible && !light->maps.fit.empty) {
@@ -100,7 +100,7 @@ static pn_result update_maps(pn_light *light, pn_receiver *const *visible, int v
     if (result != PN_OK) return result;
     fit_light(light, &want);
   }
-  if (!light->maps.fit.empty && pn_want_layers(&want) > 0) result = draw_maps(light, &want);
+  if (!light->maps.fit.empty && pni_want_layers(&want) > 0) result = draw_maps(light, &want);
   light->maps.ready = result == PN_OK;
   return result;
 }
@@ -108,26 +108,26 @@ static pn_result update_maps(pn_light *light, pn_receiver *const *visible, int v
 pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
                          int visible_count) {
   if (!light) return PN_ERROR_ARGUMENT;
-  pn_gpu *gpu = pn_light_gpu(light);
+  pni_gpu *gpu = pni_light_gpu(light);
   if (!casters || (visible_count > 0 && !visible) || visible_count < 0)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_maps_update: casters or visible is NULL");
-  if (!light->set) return pn_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_LIGHT_UNSET, "pn_light_set comes first");
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_maps_update: casters or visible is NULL");
+  if (!light->set) return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_LIGHT_UNSET, "pn_light_set comes first");
   light->casters = casters;
   light->groups = groups;
-  pn_enter(light->object.context);
-  pn_clock_start(gpu, &light->clock);
+  pni_enter(light->object.context);
+  pni_clock_start(gpu, &light->clock);
   pn_result result = update_maps(light, visible, visible_count);
-  pn_clock_end(gpu, &light->clock);
-  return pn_leave(light->object.context, result);
+  pni_clock_end(gpu, &light->clock);
+  return pni_leave(light->object.context, result);
 }
 
 pn_result pn_light_maps(const pn_light *light, pn_maps_info *out) {
   if (!light) return PN_ERROR_ARGUMENT;
   if (!out)
-    return pn_fail(pn_light_gpu(light), PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_light_maps: out is NULL");
-  const pn_maps *maps = &light->maps;
+    return pni_fail(pni_light_gpu(light), PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_light_maps: out is NULL");
+  const pni_maps *maps = &light->maps;
   if (!maps->ready)
-    return pn_fail(pn_light_gpu(light), PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "pn_maps_update comes first");
+    return pni_fail(pni_light_gpu(light), PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "pn_maps_update comes first");
   const double *b = maps->fit.bounds;
   *out = (pn_maps_info){
       .empty = maps->fit.empty,

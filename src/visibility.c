@@ -7,53 +7,54 @@
 /* ---- visibility -------------------------------------------------------------------------------------------------- */
 
 static bool is_alive(const pn_context *context, const void *object) {
-  for (const pn_object *o = context->objects; o; o = o->next)
+  for (const pni_object *o = context->objects; o; o = o->next)
     if (o == object) return true;
   return false;
 }
 
-static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pn_pair *pair, pn_attachment target) {
-  pn_gpu *gpu = pn_light_gpu(light);
-  const pn_technique_class *technique = light->technique;
+static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pni_pair *pair, pni_attachment target) {
+  pni_gpu *gpu = pni_light_gpu(light);
+  const pni_technique_class *technique = light->technique;
   pn_result result = PN_OK;
-  pn_pair_begin(gpu, pair, technique);
+  pni_pair_begin(gpu, pair, technique);
   if (light->maps.fit.empty) {
-    result = pn_fill(gpu, target, receiver->desc.width, receiver->desc.height, 1);
-    pn_clock_mark(gpu, &pair->clock, "visibility");
+    result = pni_fill(gpu, target, receiver->desc.width, receiver->desc.height, 1);
+    pni_clock_mark(gpu, &pair->clock, "visibility");
     return result;
   }
-  result = pn_light_bind_block(light);
+  result = pni_light_bind_block(light);
   if (result != PN_OK) return result;
   if (technique->shader) {
-    char defines[PN_TECHNIQUE_DEFINES];
-    pn_technique_defines(technique, light->values, defines);
-    pn_gathering gathering = {
+    char defines[PNI_TECHNIQUE_DEFINES];
+    pni_technique_defines(technique, light->values, defines);
+    pni_gathering gathering = {
         gpu, technique->shader, defines, technique->searches, &light->frame, &light->maps, receiver, pair, target};
-    return pn_gather(&gathering);
+    return pni_gather(&gathering);
   }
   if (!is_alive(light->object.context, light->casters))
-    return pn_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "the casters of the last pn_maps_update are gone");
-  pn_visibility_request request = {gpu,
-                                   &light->desc,
-                                   &light->frame,
-                                   light->values,
-                                   &light->maps,
-                                   &light->block,
-                                   light->casters,
-                                   light->groups,
-                                   light->has_visible ? &light->visible : NULL,
-                                   receiver,
-                                   pair,
-                                   target};
+    return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "the casters of the last pn_maps_update are gone");
+  pni_visibility_request request = {gpu,
+                                    &light->desc,
+                                    &light->frame,
+                                    light->values,
+                                    &light->maps,
+                                    &light->block,
+                                    light->casters,
+                                    light->groups,
+                                    light->has_visible ? &light->visible : NULL,
+                                    receiver,
+                                    pair,
+                                    target};
   return technique->draw(&request);
 }
 
 static pn_result check_pair(pn_light *light, pn_receiver *receiver) {
-  pn_gpu *gpu = pn_light_gpu(light);
+  pni_gpu *gpu = pni_light_gpu(light);
   if (!receiver || receiver->object.context != light->object.context)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "receiver is NULL, or of another context");
-  if (!receiver->set) return pn_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_RECEIVER_UNSET, "pn_receiver_set comes first");
-  if (!light->maps.ready) return pn_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "pn_maps_update comes first");
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "receiver is NULL, or of another context");
+  if (!receiver->set)
+    return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_RECEIVER_UNSET, "pn_receiver_set comes first");
+  if (!light->maps.ready) return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "pn_maps_update comes first");
   return PN_OK;
 }
 
@@ -61,11 +62,11 @@ static GLenum result_format(pn_format format) {
   return format == PN_FORMAT_R32F ? GL_R32F : format == PN_FORMAT_R8 ? GL_R8 : GL_R16F;
 }
 
-static pn_result timed_visibility(pn_light *light, pn_receiver *receiver, pn_pair *pair, pn_attachment target) {
-  pn_gpu *gpu = pn_light_gpu(light);
-  pn_clock_start(gpu, &pair->clock);
+static pn_result timed_visibility(pn_light *light, pn_receiver *receiver, pni_pair *pair, pni_attachment target) {
+  pni_gpu *gpu = pni_light_gpu(light);
+  pni_clock_start(gpu, &pair->clock);
   pn_result result = draw_visibility(light, receiver, pair, target);
-  pn_clock_end(gpu, &pair->clock);
+  pni_clock_end(gpu, &pair->clock);
   return result;
 }
 
@@ -73,49 +74,49 @@ pn_result pn_visibility(pn_light *light, pn_receiver *receiver) {
   if (!light) return PN_ERROR_ARGUMENT;
   pn_result result = check_pair(light, receiver);
   if (result != PN_OK) return result;
-  pn_pair *pair = pn_pair_get(&light->object, &receiver->object);
+  pni_pair *pair = pni_pair_get(&light->object, &receiver->object);
   if (!pair) return PN_ERROR_OUT_OF_MEMORY;
   const pn_receiver_desc *view = &receiver->desc;
-  pn_enter(light->object.context);
-  result = pn_gpu_check_lost(pn_light_gpu(light));
+  pni_enter(light->object.context);
+  result = pni_gpu_check_lost(pni_light_gpu(light));
   if (result == PN_OK)
-    result = pn_texture_shape(pn_light_gpu(light), &pair->image, result_format(view->format), view->width, view->height,
-                              0, 1);
-  pn_attachment target = {pair->image.id, GL_TEXTURE_2D, 0, 0};
+    result = pni_texture_shape(pni_light_gpu(light), &pair->image, result_format(view->format), view->width,
+                               view->height, 0, 1);
+  pni_attachment target = {pair->image.id, GL_TEXTURE_2D, 0, 0};
   if (result == PN_OK) result = timed_visibility(light, receiver, pair, target);
   pair->drawn = result == PN_OK;
-  return pn_leave(light->object.context, result);
+  return pni_leave(light->object.context, result);
 }
 
 pn_result pn_result_image(pn_light *light, pn_receiver *receiver, pn_image *out) {
   if (!light) return PN_ERROR_ARGUMENT;
-  pn_gpu *gpu = pn_light_gpu(light);
+  pni_gpu *gpu = pni_light_gpu(light);
   if (!receiver || !out)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_result_image: receiver or out is NULL");
-  pn_pair *pair = pn_pair_find(&light->object, &receiver->object);
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_result_image: receiver or out is NULL");
+  pni_pair *pair = pni_pair_find(&light->object, &receiver->object);
   if (!pair || !pair->drawn)
-    return pn_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "pn_visibility has not drawn this pair yet");
-  pn_texture_image(&pair->image, out);
+    return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "pn_visibility has not drawn this pair yet");
+  pni_texture_image(&pair->image, out);
   return PN_OK;
 }
 
 pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver, pn_soft_shadow_map *out) {
   if (!light) return PN_ERROR_ARGUMENT;
-  pn_gpu *gpu = pn_light_gpu(light);
+  pni_gpu *gpu = pni_light_gpu(light);
   if (!receiver || !out)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
-                   "pn_soft_shadow_map_image: receiver or out is NULL");
-  pn_pair *pair = pn_pair_find(&light->object, &receiver->object);
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
+                    "pn_soft_shadow_map_image: receiver or out is NULL");
+  pni_pair *pair = pni_pair_find(&light->object, &receiver->object);
   if (!pair || !pair->soft.image.texture)
-    return pn_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "the pair's last result has no soft shadow map");
+    return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "the pair's last result has no soft shadow map");
   *out = pair->soft;
   return PN_OK;
 }
 
 /* ---- into the host's texture ------------------------------------------------------------------------------------- */
 
-static void texture_extent(pn_gpu *gpu, GLenum target, pn_gl texture, GLint size[3]) {
-  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
+static void texture_extent(pni_gpu *gpu, GLenum target, pn_gl texture, GLint size[3]) {
+  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PNI_UNIT_WORK);
   GL(gpu, BindTexture)(target, texture);
   GL(gpu, GetTexLevelParameteriv)(target, 0, GL_TEXTURE_WIDTH, &size[0]);
   GL(gpu, GetTexLevelParameteriv)(target, 0, GL_TEXTURE_HEIGHT, &size[1]);
@@ -123,7 +124,8 @@ static void texture_extent(pn_gpu *gpu, GLenum target, pn_gl texture, GLint size
   GL(gpu, BindTexture)(target, 0);
 }
 
-static pn_result host_target(pn_gpu *gpu, const pn_receiver_desc *view, pn_gl texture, int layer, pn_attachment *out) {
+static pn_result host_target(pni_gpu *gpu, const pn_receiver_desc *view, pn_gl texture, int layer,
+                             pni_attachment *out) {
   GLint layered = 0, size[3] = {0};
   bool sound = texture && GL(gpu, IsTexture)(texture);
   if (sound) {
@@ -141,9 +143,9 @@ static pn_result host_target(pn_gpu *gpu, const pn_receiver_desc *view, pn_gl te
   GLenum target = layered ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
   if (sound) texture_extent(gpu, target, texture, size);
   if (!sound || size[0] < view->width || size[1] < view->height || layer < 0 || layer >= (layered ? size[2] : 1))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RESULT_TARGET,
-                   "texture %u cannot take a view of %d x %d in layer %d", texture, view->width, view->height, layer);
-  *out = (pn_attachment){texture, target, 0, layer};
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RESULT_TARGET,
+                    "texture %u cannot take a view of %d x %d in layer %d", texture, view->width, view->height, layer);
+  *out = (pni_attachment){texture, target, 0, layer};
   return PN_OK;
 }
 
@@ -151,24 +153,24 @@ pn_result pn_visibility_into(pn_light *light, pn_receiver *receiver, pn_gl textu
   if (!light) return PN_ERROR_ARGUMENT;
   pn_result result = check_pair(light, receiver);
   if (result != PN_OK) return result;
-  pn_pair *pair = pn_pair_get(&light->object, &receiver->object);
+  pni_pair *pair = pni_pair_get(&light->object, &receiver->object);
   if (!pair) return PN_ERROR_OUT_OF_MEMORY;
-  pn_attachment target;
-  pn_enter(light->object.context);
-  result = pn_gpu_check_lost(pn_light_gpu(light));
-  if (result == PN_OK) result = host_target(pn_light_gpu(light), &receiver->desc, texture, layer, &target);
+  pni_attachment target;
+  pni_enter(light->object.context);
+  result = pni_gpu_check_lost(pni_light_gpu(light));
+  if (result == PN_OK) result = host_target(pni_light_gpu(light), &receiver->desc, texture, layer, &target);
   if (result == PN_OK) result = timed_visibility(light, receiver, pair, target);
-  return pn_leave(light->object.context, result);
+  return pni_leave(light->object.context, result);
 }
 
 /* ---- looking inside ---------------------------------------------------------------------------------------------- */
 
 int pn_debug_image(pn_light *light, pn_receiver *receiver, int index, const char **name, pn_image *out) {
   if (!light || !out || index < 0) return 0;
-  const pn_pair *pair = receiver ? pn_pair_find(&light->object, &receiver->object) : NULL;
+  const pni_pair *pair = receiver ? pni_pair_find(&light->object, &receiver->object) : NULL;
   const struct {
     const char *name;
-    const pn_texture *texture;
+    const pni_texture *texture;
   } all[] = {
       {"depth", &light->maps.depth},
       {"range", &light->maps.range},
@@ -182,14 +184,14 @@ int pn_debug_image(pn_light *light, pn_receiver *receiver, int index, const char
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     if (!all[i].texture || !all[i].texture->id || index-- > 0) continue;
     if (name) *name = all[i].name;
-    pn_texture_image(all[i].texture, out);
+    pni_texture_image(all[i].texture, out);
     return 1;
   }
   return 0;
 }
 
-static int add_times(pn_gpu *gpu, pn_clock *clock, bool wait, pn_time *out, int capacity, int count) {
-  pn_clock_read(gpu, clock, wait);
+static int add_times(pni_gpu *gpu, pni_clock *clock, bool wait, pn_time *out, int capacity, int count) {
+  pni_clock_read(gpu, clock, wait);
   for (int i = 0; i < clock->count; i++) {
     int at = 0;
     while (at < count && at < capacity && strcmp(out[at].stage, clock->stage[i])) at++;
@@ -205,9 +207,9 @@ static int add_times(pn_gpu *gpu, pn_clock *clock, bool wait, pn_time *out, int 
 
 int pn_times(pn_light *light, pn_time *out, int capacity, int wait) {
   if (!light || capacity < 0 || (capacity > 0 && !out)) return 0;
-  pn_gpu *gpu = pn_light_gpu(light);
+  pni_gpu *gpu = pni_light_gpu(light);
   int count = add_times(gpu, &light->clock, wait != 0, out, capacity, 0);
-  for (pn_pair *pair = light->object.context->pairs; pair; pair = pair->next)
+  for (pni_pair *pair = light->object.context->pairs; pair; pair = pair->next)
     if (pair->light == &light->object) count = add_times(gpu, &pair->clock, wait != 0, out, capacity, count);
   return count;
 }

@@ -6,43 +6,43 @@
 
 #include "casters/mesh.h"
 
-static pn_gpu *gpu_of(const pn_casters *casters) { return &casters->object.context->gpu; }
+static pni_gpu *gpu_of(const pn_casters *casters) { return &casters->object.context->gpu; }
 
 /* ---- the object -------------------------------------------------------------------------------------------------- */
 
-static void free_casters(pn_object *object, bool abandon) {
+static void free_casters(pni_object *object, bool abandon) {
   pn_casters *casters = (pn_casters *)object;
-  pn_gpu *gpu = gpu_of(casters);
-  for (int i = 0; i < casters->mesh_count; i++) pn_mesh_drop(gpu, &casters->meshes[i], abandon);
-  pn_free(gpu, casters->meshes);
-  pn_free(gpu, casters->instances);
-  pn_object_unlink(&casters->object);
-  pn_free(gpu, casters);
+  pni_gpu *gpu = gpu_of(casters);
+  for (int i = 0; i < casters->mesh_count; i++) pni_mesh_drop(gpu, &casters->meshes[i], abandon);
+  pni_free(gpu, casters->meshes);
+  pni_free(gpu, casters->instances);
+  pni_object_unlink(&casters->object);
+  pni_free(gpu, casters);
 }
 
 pn_result pn_casters_create(pn_context *context, pn_casters **out) {
   if (!context) return PN_ERROR_ARGUMENT;
   if (!out)
-    return pn_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_casters_create: out is NULL");
-  *out = pn_object_create(context, free_casters, sizeof **out);
+    return pni_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_casters_create: out is NULL");
+  *out = pni_object_create(context, free_casters, sizeof **out);
   return *out ? PN_OK : PN_ERROR_OUT_OF_MEMORY;
 }
 
 void pn_casters_destroy(pn_casters **casters) {
   if (!casters || !*casters) return;
   pn_context *context = (*casters)->object.context;
-  pn_enter(context);
+  pni_enter(context);
   free_casters(&(*casters)->object, false);
-  pn_leave(context, PN_OK);
+  pni_leave(context, PN_OK);
   *casters = NULL;
 }
 
 /* ---- slots ------------------------------------------------------------------------------------------------------- */
 
 /* A slot in an array that grows; freed ones are taken first. Ids never repeat, so a stale one is noticed. */
-static bool grow(pn_gpu *gpu, void **array, int *capacity, size_t element) {
+static bool grow(pni_gpu *gpu, void **array, int *capacity, size_t element) {
   int more = *capacity ? *capacity * 2 : 16;
-  void *grown = pn_reallocate(gpu, *array, (size_t)more * element);
+  void *grown = pni_reallocate(gpu, *array, (size_t)more * element);
   if (!grown) return false;
   memset((char *)grown + (size_t)*capacity * element, 0, (size_t)(more - *capacity) * element);
   *array = grown;
@@ -50,7 +50,7 @@ static bool grow(pn_gpu *gpu, void **array, int *capacity, size_t element) {
   return true;
 }
 
-static pn_mesh_data *free_mesh(pn_casters *c) {
+static pni_mesh_data *free_mesh(pn_casters *c) {
   for (int i = 0; i < c->mesh_count; i++)
     if (!c->meshes[i].id) return &c->meshes[i];
   if (c->mesh_count == c->mesh_capacity && !grow(gpu_of(c), (void **)&c->meshes, &c->mesh_capacity, sizeof *c->meshes))
@@ -59,7 +59,7 @@ static pn_mesh_data *free_mesh(pn_casters *c) {
 }
 
 /* Ids count up, so instances stay sorted by id when removal closes the gap: found by bisection. */
-static pn_instance_data *find_instance(const pn_casters *c, uint32_t id) {
+static pni_instance_data *find_instance(const pn_casters *c, uint32_t id) {
   int low = 0, high = c->instance_count;
   while (low < high) {
     int middle = (low + high) / 2;
@@ -69,7 +69,7 @@ static pn_instance_data *find_instance(const pn_casters *c, uint32_t id) {
   return id && low < c->instance_count && c->instances[low].id == id ? &c->instances[low] : NULL;
 }
 
-pn_mesh_data *pn_find_mesh(const pn_casters *c, uint32_t id) {
+pni_mesh_data *pni_find_mesh(const pn_casters *c, uint32_t id) {
   for (int i = 0; id && i < c->mesh_count; i++)
     if (c->meshes[i].id == id) return &c->meshes[i];
   return NULL;
@@ -79,76 +79,76 @@ pn_mesh_data *pn_find_mesh(const pn_casters *c, uint32_t id) {
 
 pn_result pn_mesh_add(pn_casters *casters, const pn_mesh_desc *desc, pn_mesh *out) {
   if (!casters) return PN_ERROR_ARGUMENT;
-  pn_gpu *gpu = gpu_of(casters);
+  pni_gpu *gpu = gpu_of(casters);
   if (!desc || !out)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_mesh_add: desc or out is NULL");
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_mesh_add: desc or out is NULL");
   out->id = 0;
-  pn_enter(casters->object.context); /* the check looks into buffers */
-  pn_result result = pn_mesh_check(gpu, desc);
-  if (result != PN_OK) return pn_leave(casters->object.context, result);
-  pn_mesh_data *slot = free_mesh(casters);
-  if (!slot) return pn_leave(casters->object.context, PN_ERROR_OUT_OF_MEMORY);
-  result = pn_mesh_build(gpu, desc, slot);
+  pni_enter(casters->object.context); /* the check looks into buffers */
+  pn_result result = pni_mesh_check(gpu, desc);
+  if (result != PN_OK) return pni_leave(casters->object.context, result);
+  pni_mesh_data *slot = free_mesh(casters);
+  if (!slot) return pni_leave(casters->object.context, PN_ERROR_OUT_OF_MEMORY);
+  result = pni_mesh_build(gpu, desc, slot);
   if (result == PN_OK) out->id = slot->id = ++casters->next_id;
-  return pn_leave(casters->object.context, result);
+  return pni_leave(casters->object.context, result);
 }
 
-static pn_mesh_data *known_mesh(pn_casters *casters, pn_mesh mesh) {
-  pn_mesh_data *found = pn_find_mesh(casters, mesh.id);
-  if (!found) pn_fail(gpu_of(casters), PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_UNKNOWN, "there is no mesh %u", mesh.id);
+static pni_mesh_data *known_mesh(pn_casters *casters, pn_mesh mesh) {
+  pni_mesh_data *found = pni_find_mesh(casters, mesh.id);
+  if (!found) pni_fail(gpu_of(casters), PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_UNKNOWN, "there is no mesh %u", mesh.id);
   return found;
 }
 
 pn_result pn_mesh_moved(pn_casters *casters, pn_mesh mesh, const pn_span *positions, const float *bounds) {
   if (!casters) return PN_ERROR_ARGUMENT;
-  pn_gpu *gpu = gpu_of(casters);
-  pn_mesh_data *data = known_mesh(casters, mesh);
+  pni_gpu *gpu = gpu_of(casters);
+  pni_mesh_data *data = known_mesh(casters, mesh);
   if (!data) return PN_ERROR_ARGUMENT;
   bool in_buffer = data->positions.buffer != 0;
   if (positions && (in_buffer || !positions->data || positions->buffer || positions->count != data->positions.count ||
                     (positions->stride && positions->stride < 12)))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_POSITIONS,
-                   "new positions: in memory, as many as before, of a mesh whose positions came from memory");
-  if (bounds && !pn_box_sound(bounds, bounds + 3))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_BOUNDS, "bounds are inverted or not finite");
-  pn_enter(casters->object.context);
-  pn_result result = pn_mesh_deform(gpu, data, positions, bounds);
-  return pn_leave(casters->object.context, result);
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_POSITIONS,
+                    "new positions: in memory, as many as before, of a mesh whose positions came from memory");
+  if (bounds && !pni_box_sound(bounds, bounds + 3))
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_BOUNDS, "bounds are inverted or not finite");
+  pni_enter(casters->object.context);
+  pn_result result = pni_mesh_deform(gpu, data, positions, bounds);
+  return pni_leave(casters->object.context, result);
 }
 
 pn_result pn_mesh_remove(pn_casters *casters, pn_mesh mesh) {
   if (!casters) return PN_ERROR_ARGUMENT;
-  pn_mesh_data *data = known_mesh(casters, mesh);
+  pni_mesh_data *data = known_mesh(casters, mesh);
   if (!data) return PN_ERROR_ARGUMENT;
   int kept = 0;
   for (int i = 0; i < casters->instance_count; i++)
     if (&casters->meshes[casters->instances[i].mesh] != data) casters->instances[kept++] = casters->instances[i];
   casters->instance_count = kept;
-  pn_enter(casters->object.context);
-  pn_mesh_drop(gpu_of(casters), data, false);
-  return pn_leave(casters->object.context, PN_OK);
+  pni_enter(casters->object.context);
+  pni_mesh_drop(gpu_of(casters), data, false);
+  return pni_leave(casters->object.context, PN_OK);
 }
 
 /* ---- instances --------------------------------------------------------------------------------------------------- */
 
-static pn_result check_transform(pn_gpu *gpu, const float m[16]) {
-  if (!m) return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "the transform is NULL");
-  if (pn_floats_finite(m, 16) && m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1) return PN_OK;
-  return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_INSTANCE_TRANSFORM,
-                 "a transform must be finite, its last row 0 0 0 1");
+static pn_result check_transform(pni_gpu *gpu, const float m[16]) {
+  if (!m) return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "the transform is NULL");
+  if (pni_floats_finite(m, 16) && m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1) return PN_OK;
+  return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_INSTANCE_TRANSFORM,
+                  "a transform must be finite, its last row 0 0 0 1");
 }
 
-static pn_result check_group(pn_gpu *gpu, int group) {
+static pn_result check_group(pni_gpu *gpu, int group) {
   if (group >= 0 && group < PN_GROUP_COUNT) return PN_OK;
-  return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_CASTER_GROUP, "group %d is not one of 0..%d", group,
-                 PN_GROUP_COUNT - 1);
+  return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_CASTER_GROUP, "group %d is not one of 0..%d", group,
+                  PN_GROUP_COUNT - 1);
 }
 
 pn_result pn_instance_add(pn_casters *casters, pn_mesh mesh, const float transform[16], int group, pn_instance *out) {
   if (!casters) return PN_ERROR_ARGUMENT;
-  pn_gpu *gpu = gpu_of(casters);
+  pni_gpu *gpu = gpu_of(casters);
   if (out) out->id = 0;
-  const pn_mesh_data *data = known_mesh(casters, mesh);
+  const pni_mesh_data *data = known_mesh(casters, mesh);
   if (!data) return PN_ERROR_ARGUMENT;
   pn_result result = check_transform(gpu, transform);
   if (result == PN_OK) result = check_group(gpu, group);
@@ -157,31 +157,31 @@ pn_result pn_instance_add(pn_casters *casters, pn_mesh mesh, const float transfo
       !grow(gpu, (void **)&casters->instances, &casters->instance_capacity, sizeof *casters->instances))
     return PN_ERROR_OUT_OF_MEMORY;
   casters->instances[casters->instance_count++] =
-      (pn_instance_data){++casters->next_id, (int)(data - casters->meshes), group, pn_matrix_from_floats(transform)};
+      (pni_instance_data){++casters->next_id, (int)(data - casters->meshes), group, pni_matrix_from_floats(transform)};
   if (out) out->id = casters->next_id;
   return PN_OK;
 }
 
-static pn_instance_data *known_instance(pn_casters *casters, pn_instance instance) {
-  pn_instance_data *found = find_instance(casters, instance.id);
+static pni_instance_data *known_instance(pn_casters *casters, pn_instance instance) {
+  pni_instance_data *found = find_instance(casters, instance.id);
   if (!found)
-    pn_fail(gpu_of(casters), PN_ERROR_ARGUMENT, PN_MESSAGE_INSTANCE_UNKNOWN, "there is no instance %u", instance.id);
+    pni_fail(gpu_of(casters), PN_ERROR_ARGUMENT, PN_MESSAGE_INSTANCE_UNKNOWN, "there is no instance %u", instance.id);
   return found;
 }
 
 pn_result pn_instance_move(pn_casters *casters, pn_instance instance, const float transform[16]) {
   if (!casters) return PN_ERROR_ARGUMENT;
-  pn_instance_data *data = known_instance(casters, instance);
+  pni_instance_data *data = known_instance(casters, instance);
   if (!data) return PN_ERROR_ARGUMENT;
   pn_result result = check_transform(gpu_of(casters), transform);
   if (result != PN_OK) return result;
-  data->scene_from_object = pn_matrix_from_floats(transform);
+  data->scene_from_object = pni_matrix_from_floats(transform);
   return PN_OK;
 }
 
 pn_result pn_instance_remove(pn_casters *casters, pn_instance instance) {
   if (!casters) return PN_ERROR_ARGUMENT;
-  pn_instance_data *data = known_instance(casters, instance);
+  pni_instance_data *data = known_instance(casters, instance);
   if (!data) return PN_ERROR_ARGUMENT;
   ptrdiff_t at = data - casters->instances;
   memmove(data, data + 1, (size_t)(casters->instance_count - at - 1) * sizeof *data);
@@ -191,15 +191,15 @@ pn_result pn_instance_remove(pn_casters *casters, pn_instance instance) {
 
 pn_result pn_casters_draw(pn_casters *casters, int group, pn_draw_fn draw, void *user, const float bounds[6]) {
   if (!casters) return PN_ERROR_ARGUMENT;
-  pn_gpu *gpu = gpu_of(casters);
+  pni_gpu *gpu = gpu_of(casters);
   pn_result result = check_group(gpu, group);
   if (result != PN_OK) return result;
   if (draw && !bounds)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_casters_draw: bounds is NULL");
-  if (draw && (!pn_box_sound(bounds, bounds + 3)))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_CASTER_BOUNDS,
-                   "a draw callback needs bounds: finite, not inverted");
-  pn_callback *callback = &casters->callbacks[group];
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_casters_draw: bounds is NULL");
+  if (draw && (!pni_box_sound(bounds, bounds + 3)))
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_CASTER_BOUNDS,
+                    "a draw callback needs bounds: finite, not inverted");
+  pni_callback *callback = &casters->callbacks[group];
   callback->draw = draw;
   callback->user = user;
   if (draw) memcpy(&callback->bounds, bounds, sizeof callback->bounds);
@@ -208,24 +208,24 @@ pn_result pn_casters_draw(pn_casters *casters, int group, pn_draw_fn draw, void 
 
 /* ---- bounds ------------------------------------------------------------------------------------------------------ */
 
-static void visit_box(const pn_box *box, const pn_matrix *transform, pn_box_visitor visit, void *user) {
+static void visit_box(const pni_box *box, const pni_matrix *transform, pni_box_visitor visit, void *user) {
   double corners[8][3];
   for (int i = 0; i < 8; i++) {
     double p[3] = {i & 1 ? box->max[0] : box->min[0], i & 2 ? box->max[1] : box->min[1],
                    i & 4 ? box->max[2] : box->min[2]};
-    pn_matrix_point(transform, p, corners[i]);
+    pni_matrix_point(transform, p, corners[i]);
   }
   visit(user, (const double(*)[3])corners);
 }
 
-void pn_casters_each_box(const pn_casters *casters, uint32_t groups, pn_box_visitor visit, void *user) {
+void pni_casters_each_box(const pn_casters *casters, uint32_t groups, pni_box_visitor visit, void *user) {
   for (int i = 0; i < casters->instance_count; i++) {
-    const pn_instance_data *instance = &casters->instances[i];
+    const pni_instance_data *instance = &casters->instances[i];
     if (!(groups >> instance->group & 1)) continue;
-    const pn_mesh_data *mesh = &casters->meshes[instance->mesh];
+    const pni_mesh_data *mesh = &casters->meshes[instance->mesh];
     for (int b = 0; b < mesh->box_count; b++) visit_box(&mesh->boxes[b], &instance->scene_from_object, visit, user);
   }
-  pn_matrix identity = pn_matrix_identity();
+  pni_matrix identity = pni_matrix_identity();
   for (int group = 0; group < PN_GROUP_COUNT; group++)
     if (casters->callbacks[group].draw && (groups >> group & 1))
       visit_box(&casters->callbacks[group].bounds, &identity, visit, user);

@@ -7,14 +7,14 @@
 
 typedef struct {
   float min[3], max[3];
-} pn_box;
+} pni_box;
 
 /* Boxes over runs of triangles: they bound a mesh in any projection far more tightly than one box does. */
-enum { PN_BOXES_MAX = 256, PN_BOX_TRIANGLES = 64 };
+enum { PNI_BOXES_MAX = 256, PNI_BOX_TRIANGLES = 64 };
 
-struct pn_mesh_edges; /* casters/edges.h */
+struct pni_mesh_edges; /* casters/edges.h */
 
-typedef struct pn_mesh_data {
+typedef struct pni_mesh_data {
   uint32_t id;                           /* 0: a free slot */
   pn_span positions, indices, texcoords; /* as described; data pointers are not kept */
   int index_bytes;
@@ -27,54 +27,54 @@ typedef struct pn_mesh_data {
   int alpha_channel;
   float alpha_cutoff;
   bool clockwise;
-  pn_box *boxes;
+  pni_box *boxes;
   int box_count;
   size_t box_triangles; /* each box is over that many of the triangles drawn, in order; 0: it says nothing of that */
-  struct pn_mesh_edges *edges; /* NULL until a technique asks for them */
-} pn_mesh_data;
+  struct pni_mesh_edges *edges; /* NULL until a technique asks for them */
+} pni_mesh_data;
 
 typedef struct {
   uint32_t id;
   int mesh; /* slot in meshes: stays while the instance does */
   int group;
-  pn_matrix scene_from_object;
-} pn_instance_data;
+  pni_matrix scene_from_object;
+} pni_instance_data;
 
 typedef struct {
   pn_draw_fn draw; /* NULL: none */
   void *user;
-  pn_box bounds;
-} pn_callback;
+  pni_box bounds;
+} pni_callback;
 
 struct pn_casters {
-  pn_object object;
-  pn_mesh_data *meshes;
+  pni_object object;
+  pni_mesh_data *meshes;
   int mesh_count, mesh_capacity;
-  pn_instance_data *instances;
+  pni_instance_data *instances;
   int instance_count, instance_capacity;
   uint32_t next_id;
-  pn_callback callbacks[PN_GROUP_COUNT];
+  pni_callback callbacks[PN_GROUP_COUNT];
   bool told_meshes; /* that some have no mesh to find edges in */
 };
 
-pn_mesh_data *pn_find_mesh(const pn_casters *casters, uint32_t id);
+pni_mesh_data *pni_find_mesh(const pn_casters *casters, uint32_t id);
 
 /* Calls visit with the eight corners, in scene space, of every box of every caster in groups. */
-typedef void (*pn_box_visitor)(void *user, const double corners[8][3]);
-void pn_casters_each_box(const pn_casters *casters, uint32_t groups, pn_box_visitor visit, void *user);
+typedef void (*pni_box_visitor)(void *user, const double corners[8][3]);
+void pni_casters_each_box(const pn_casters *casters, uint32_t groups, pni_box_visitor visit, void *user);
 
 /* Draws all casters of groups into the pass that has begun. */
 typedef struct {
-  pn_matrix clip_from_scene;
-  pn_matrix cull_from_scene; /* the same, or of the part of the map that counts */
+  pni_matrix clip_from_scene;
+  pni_matrix cull_from_scene; /* the same, or of the part of the map that counts */
   uint32_t groups;
   pn_faces faces;
   pn_gl peel; /* the previous layer, or 0 */
   int layer, width, height;
-} pn_caster_draw;
-pn_result pn_casters_draw_pass(pn_casters *casters, const pn_caster_draw *draw);
+} pni_caster_draw;
+pn_result pni_casters_draw_pass(pn_casters *casters, const pni_caster_draw *draw);
 
 /* Compiles what drawing may need. */
-pn_result pn_casters_prepare(pn_gpu *gpu, bool peel);
+pn_result pni_casters_prepare(pni_gpu *gpu, bool peel);
 
 #endif

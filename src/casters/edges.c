@@ -43,18 +43,18 @@ static uint32_t find_same(const welding *w, uint32_t vertex) {
   }
 }
 
-static pn_result join_vertices(pn_gpu *gpu, const float *positions, size_t vertices, uint32_t **same) {
+static pn_result join_vertices(pni_gpu *gpu, const float *positions, size_t vertices, uint32_t **same) {
   size_t slots = 16;
   while (slots < 2 * vertices) slots *= 2;
-  welding w = {positions, pn_reallocate(gpu, NULL, slots * sizeof(uint32_t)),
-               pn_reallocate(gpu, NULL, vertices * sizeof(uint32_t)), slots - 1};
+  welding w = {positions, pni_reallocate(gpu, NULL, slots * sizeof(uint32_t)),
+               pni_reallocate(gpu, NULL, vertices * sizeof(uint32_t)), slots - 1};
   if (w.table && w.same) {
     memset(w.table, 0xff, slots * sizeof *w.table);
     for (size_t i = 0; i < vertices; i++) w.same[i] = find_same(&w, (uint32_t)i);
   }
   bool done = w.table && w.same;
-  pn_free(gpu, w.table);
-  if (!done) pn_free(gpu, w.same);
+  pni_free(gpu, w.table);
+  if (!done) pni_free(gpu, w.same);
   *same = done ? w.same : NULL;
   return done ? PN_OK : PN_ERROR_OUT_OF_MEMORY;
 }
@@ -101,9 +101,9 @@ static int compare_sides(const void *a, const void *b) {
 }
 
 /* By the lower end in one pass, then each of those few by the rest. */
-static pn_result sort_sides(pn_gpu *gpu, side **sides, size_t count, size_t vertices) {
-  size_t *start = pn_allocate_zero(gpu, (vertices + 1) * sizeof *start);
-  side *sorted = pn_reallocate(gpu, NULL, count * sizeof *sorted);
+static pn_result sort_sides(pni_gpu *gpu, side **sides, size_t count, size_t vertices) {
+  size_t *start = pni_allocate_zero(gpu, (vertices + 1) * sizeof *start);
+  side *sorted = pni_reallocate(gpu, NULL, count * sizeof *sorted);
   if (start && sorted) {
     for (size_t i = 0; i < count; i++) start[(*sides)[i].low + 1]++;
     for (size_t v = 0; v < vertices; v++) start[v + 1] += start[v];
@@ -113,8 +113,8 @@ static pn_result sort_sides(pn_gpu *gpu, side **sides, size_t count, size_t vert
       qsort(sorted + first, start[v] - first, sizeof *sorted, compare_sides);
   }
   bool done = start && sorted;
-  pn_free(gpu, start);
-  pn_free(gpu, done ? *sides : sorted);
+  pni_free(gpu, start);
+  pni_free(gpu, done ? *sides : sorted);
   if (done) *sides = sorted;
   return done ? PN_OK : PN_ERROR_OUT_OF_MEMORY;
 }
@@ -123,23 +123,23 @@ static pn_result sort_sides(pn_gpu *gpu, side **sides, size_t count, size_t vert
 
 /* Sides with the same ends make one edge, or, where their faces are three and more, one edge for each: a smoothie that
  * another face covers is covered by that face's own, so that nothing is lost. Faces drawn twice count once. */
-static void add_edge(pn_edge_list *list, const side *s, size_t count) {
+static void add_edge(pni_edge_list *list, const side *s, size_t count) {
   size_t faces = 1;
   for (size_t i = 1; i < count; i++) faces += s[i].opposite != s[i - 1].opposite;
   if (faces == 2) {
     const side *last = &s[count - 1];
     list->opposed += count == 2 && s[0].backward == last->backward;
-    list->edges[list->count++] = (pn_edge){{s->low, s->high}, {s->opposite, last->opposite}};
+    list->edges[list->count++] = (pni_edge){{s->low, s->high}, {s->opposite, last->opposite}};
     return;
   }
   list->open += faces == 1;
   list->crowded += faces > 2;
   for (size_t i = 0; i < count; i++)
     if (i == 0 || s[i].opposite != s[i - 1].opposite)
-      list->edges[list->count++] = (pn_edge){{s[i].low, s[i].high}, {s[i].opposite, s[i].opposite}};
+      list->edges[list->count++] = (pni_edge){{s[i].low, s[i].high}, {s[i].opposite, s[i].opposite}};
 }
 
-static void add_edges(pn_edge_list *list, const side *sides, size_t count) {
+static void add_edges(pni_edge_list *list, const side *sides, size_t count) {
   for (size_t first = 0, end; first < count; first = end) {
     end = first + 1;
     while (end < count && sides[end].low == sides[first].low && sides[end].high == sides[first].high) end++;
@@ -147,7 +147,7 @@ static void add_edges(pn_edge_list *list, const side *sides, size_t count) {
   }
 }
 
-static void add_rings(pn_edge_list *list) {
+static void add_rings(pni_edge_list *list) {
   for (size_t e = 0; e < list->count; e++)
     for (int i = 0; i < 2; i++) list->rings[list->edges[e].ends[i]].count++;
   uint32_t first = 0;
@@ -158,43 +158,43 @@ static void add_rings(pn_edge_list *list) {
   }
   for (size_t e = 0; e < list->count; e++)
     for (int i = 0; i < 2; i++) {
-      pn_ring *ring = &list->rings[list->edges[e].ends[i]];
-      list->entries[ring->first + ring->count++] = (pn_ring_entry){(uint32_t)e, list->edges[e].ends[1 - i]};
+      pni_ring *ring = &list->rings[list->edges[e].ends[i]];
+      list->entries[ring->first + ring->count++] = (pni_ring_entry){(uint32_t)e, list->edges[e].ends[1 - i]};
     }
 }
 
-static pn_result build_list(pn_gpu *gpu, side *sides, size_t count, size_t vertices, pn_edge_list *out) {
+static pn_result build_list(pni_gpu *gpu, side *sides, size_t count, size_t vertices, pni_edge_list *out) {
   out->vertices = vertices;
-  out->edges = pn_reallocate(gpu, NULL, (count + 1) * sizeof *out->edges);
-  out->entries = pn_reallocate(gpu, NULL, (2 * count + 1) * sizeof *out->entries);
-  out->rings = pn_allocate_zero(gpu, vertices * sizeof *out->rings);
+  out->edges = pni_reallocate(gpu, NULL, (count + 1) * sizeof *out->edges);
+  out->entries = pni_reallocate(gpu, NULL, (2 * count + 1) * sizeof *out->entries);
+  out->rings = pni_allocate_zero(gpu, vertices * sizeof *out->rings);
   if (!out->edges || !out->entries || !out->rings) return PN_ERROR_OUT_OF_MEMORY;
   add_edges(out, sides, count);
   add_rings(out);
   return PN_OK;
 }
 
-pn_result pn_edges_find(pn_gpu *gpu, const float *positions, size_t vertices, const uint32_t *indices,
-                        size_t index_count, pn_edge_list *out) {
+pn_result pni_edges_find(pni_gpu *gpu, const float *positions, size_t vertices, const uint32_t *indices,
+                         size_t index_count, pni_edge_list *out) {
   memset(out, 0, sizeof *out);
   uint32_t *same = NULL;
   side *sides = NULL;
   pn_result result = join_vertices(gpu, positions, vertices, &same);
-  if (result == PN_OK) sides = pn_reallocate(gpu, NULL, (index_count + 1) * sizeof *sides);
+  if (result == PN_OK) sides = pni_reallocate(gpu, NULL, (index_count + 1) * sizeof *sides);
   if (!sides) result = PN_ERROR_OUT_OF_MEMORY;
   size_t count = 0;
   if (result == PN_OK) count = collect_sides(same, vertices, indices, index_count, sides, &out->dropped);
   if (result == PN_OK && count) result = sort_sides(gpu, &sides, count, vertices);
   if (result == PN_OK) result = build_list(gpu, sides, count, vertices, out);
-  pn_free(gpu, same);
-  pn_free(gpu, sides);
-  if (result != PN_OK) pn_edges_free(gpu, out);
+  pni_free(gpu, same);
+  pni_free(gpu, sides);
+  if (result != PN_OK) pni_edges_free(gpu, out);
   return result;
 }
 
-void pn_edges_free(pn_gpu *gpu, pn_edge_list *list) {
-  pn_free(gpu, list->edges);
-  pn_free(gpu, list->rings);
-  pn_free(gpu, list->entries);
+void pni_edges_free(pni_gpu *gpu, pni_edge_list *list) {
+  pni_free(gpu, list->edges);
+  pni_free(gpu, list->rings);
+  pni_free(gpu, list->entries);
   memset(list, 0, sizeof *list);
 }

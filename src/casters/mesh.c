@@ -11,7 +11,7 @@
 static bool span_given(const pn_span *span) { return span->buffer || span->data; }
 
 /* Whether the host's buffer is as large as the span says. */
-static bool span_inside(pn_gpu *gpu, const pn_span *span, size_t element) {
+static bool span_inside(pni_gpu *gpu, const pn_span *span, size_t element) {
   GLint64 bytes = 0;
   size_t stride = span->stride ? span->stride : element;
   if (!span->buffer || span->count == 0) return true;
@@ -22,7 +22,7 @@ static bool span_inside(pn_gpu *gpu, const pn_span *span, size_t element) {
 }
 
 /* A span that can be read: one source, elements that fit their stride. */
-static bool span_sound(pn_gpu *gpu, const pn_span *span, size_t element) {
+static bool span_sound(pni_gpu *gpu, const pn_span *span, size_t element) {
   if (!span->buffer == !span->data) return false;
   if (span->buffer && !GL(gpu, IsBuffer)(span->buffer)) return false;
   if (span->stride && span->stride < element) return false;
@@ -30,51 +30,51 @@ static bool span_sound(pn_gpu *gpu, const pn_span *span, size_t element) {
          span_inside(gpu, span, element);
 }
 
-static pn_result check_indices(pn_gpu *gpu, const pn_mesh_desc *d) {
+static pn_result check_indices(pni_gpu *gpu, const pn_mesh_desc *d) {
   size_t drawn = d->index_bytes ? d->indices.count : d->positions.count;
   bool size = d->index_bytes == 0 || d->index_bytes == 2 || d->index_bytes == 4;
   if (!size || (d->index_bytes && (!span_sound(gpu, &d->indices, (size_t)d->index_bytes) || d->indices.count == 0)))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "indices: index_bytes 0, 2 or 4, and one source");
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "indices: index_bytes 0, 2 or 4, and one source");
   if (!d->index_bytes && span_given(&d->indices))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "indices are given but index_bytes is 0");
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "indices are given but index_bytes is 0");
   if (d->index_bytes && d->indices.buffer && d->indices.stride && d->indices.stride != (size_t)d->index_bytes)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "indices in a GL buffer must be tightly packed");
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "indices in a GL buffer must be tightly packed");
   if (drawn % 3)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "%zu is not a number of triangles times three",
-                   drawn);
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "%zu is not a number of triangles times three",
+                    drawn);
   return PN_OK;
 }
 
-static pn_result check_alpha(pn_gpu *gpu, const pn_mesh_desc *d) {
+static pn_result check_alpha(pni_gpu *gpu, const pn_mesh_desc *d) {
   if (!d->alpha_texture && !span_given(&d->texcoords)) return PN_OK;
   if (!d->alpha_texture || !span_sound(gpu, &d->texcoords, 8) || d->texcoords.count < d->positions.count)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_TEXCOORDS,
-                   "an alpha texture and two floats for each position come together");
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_TEXCOORDS,
+                    "an alpha texture and two floats for each position come together");
   if (!GL(gpu, IsTexture)(d->alpha_texture) || d->alpha_channel < 0 || d->alpha_channel > 3 ||
       !(d->alpha_cutoff >= 0) || !(d->alpha_cutoff <= 1))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_ALPHA, "alpha: a texture, channel 0..3, cutoff in [0, 1]");
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_ALPHA, "alpha: a texture, channel 0..3, cutoff in [0, 1]");
   return PN_OK;
 }
 
 static bool equal3(const float a[3], const float b[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 
-bool pn_box_sound(const float min[3], const float max[3]) {
+bool pni_box_sound(const float min[3], const float max[3]) {
   for (int i = 0; i < 3; i++)
     if (!isfinite(min[i]) || !isfinite(max[i]) || min[i] > max[i]) return false;
   return true;
 }
 
-pn_result pn_mesh_check(pn_gpu *gpu, const pn_mesh_desc *d) {
+pn_result pni_mesh_check(pni_gpu *gpu, const pn_mesh_desc *d) {
   if (d->positions.count == 0 || !span_sound(gpu, &d->positions, 12))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_POSITIONS,
-                   "positions: either a GL buffer or memory, three floats each, at least one triangle");
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_POSITIONS,
+                    "positions: either a GL buffer or memory, three floats each, at least one triangle");
   pn_result result = check_indices(gpu, d);
   if (result == PN_OK) result = check_alpha(gpu, d);
   if (result != PN_OK) return result;
-  if (!pn_box_sound(d->bounds_min, d->bounds_max))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_BOUNDS, "bounds are inverted or not finite");
+  if (!pni_box_sound(d->bounds_min, d->bounds_max))
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_BOUNDS, "bounds are inverted or not finite");
   if (d->positions.buffer && equal3(d->bounds_min, d->bounds_max))
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_BOUNDS, "positions in a GL buffer need bounds");
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_BOUNDS, "positions in a GL buffer need bounds");
   return PN_OK;
 }
 
@@ -86,7 +86,7 @@ static const char *span_at(const pn_span *span, size_t element, size_t index) {
 
 static void position_at(const pn_span *span, size_t index, float out[3]) { memcpy(out, span_at(span, 12, index), 12); }
 
-static pn_result copy_indices(pn_gpu *gpu, const pn_mesh_desc *d, uint32_t *out) {
+static pn_result copy_indices(pni_gpu *gpu, const pn_mesh_desc *d, uint32_t *out) {
   size_t count = d->index_bytes ? d->indices.count : d->positions.count;
   for (size_t i = 0; i < count; i++) {
     out[i] = (uint32_t)i;
@@ -97,8 +97,8 @@ static pn_result copy_indices(pn_gpu *gpu, const pn_mesh_desc *d, uint32_t *out)
       out[i] = narrow;
     }
     if (out[i] >= d->positions.count)
-      return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "index %u, but there are %zu positions", out[i],
-                     d->positions.count);
+      return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_INDICES, "index %u, but there are %zu positions", out[i],
+                      d->positions.count);
   }
   return PN_OK;
 }
@@ -115,14 +115,14 @@ static bool has_area(float p[3][3]) {
   return a[1] * b[2] != a[2] * b[1] || a[2] * b[0] != a[0] * b[2] || a[0] * b[1] != a[1] * b[0];
 }
 
-static void box_start(pn_box *box) {
+static void box_start(pni_box *box) {
   for (int i = 0; i < 3; i++) {
     box->min[i] = INFINITY;
     box->max[i] = -INFINITY;
   }
 }
 
-static void box_add(pn_box *box, const float p[3]) {
+static void box_add(pni_box *box, const float p[3]) {
   for (int i = 0; i < 3; i++) {
     box->min[i] = fminf(box->min[i], p[i]);
     box->max[i] = fmaxf(box->max[i], p[i]);
@@ -130,12 +130,12 @@ static void box_add(pn_box *box, const float p[3]) {
 }
 
 static size_t run_length(size_t triangles) {
-  size_t run = (triangles + PN_BOXES_MAX - 1) / PN_BOXES_MAX;
-  return run > PN_BOX_TRIANGLES ? run : PN_BOX_TRIANGLES;
+  size_t run = (triangles + PNI_BOXES_MAX - 1) / PNI_BOXES_MAX;
+  return run > PNI_BOX_TRIANGLES ? run : PNI_BOX_TRIANGLES;
 }
 
 /* Keeps the triangles that have area, in order, and boxes over runs of them. */
-static size_t filter_triangles(pn_mesh_data *mesh, const pn_span *positions, uint32_t *kept) {
+static size_t filter_triangles(pni_mesh_data *mesh, const pn_span *positions, uint32_t *kept) {
   size_t total = mesh->kept_count / 3, run = run_length(total), count = 0;
   mesh->box_count = 0;
   mesh->box_triangles = run;
@@ -153,7 +153,7 @@ static size_t filter_triangles(pn_mesh_data *mesh, const pn_span *positions, uin
 }
 
 /* Positions in memory, indices in the host's buffer: boxes over runs of vertices. */
-static void box_vertices(pn_mesh_data *mesh, const pn_span *positions) {
+static void box_vertices(pni_mesh_data *mesh, const pn_span *positions) {
   size_t run = run_length(positions->count);
   mesh->box_count = 0;
   mesh->box_triangles = 0;
@@ -171,31 +171,31 @@ static void box_vertices(pn_mesh_data *mesh, const pn_span *positions) {
 
 /* ---- buffers ----------------------------------------------------------------------------------------------------- */
 
-static pn_result upload(pn_gpu *gpu, pn_mesh_data *mesh, int slot, GLenum target, const void *data, size_t bytes) {
-  pn_result result = pn_memory_take(gpu, bytes);
+static pn_result upload(pni_gpu *gpu, pni_mesh_data *mesh, int slot, GLenum target, const void *data, size_t bytes) {
+  pn_result result = pni_memory_take(gpu, bytes);
   if (result != PN_OK) return result;
   if (!mesh->buffers[slot]) GL(gpu, GenBuffers)(1, &mesh->buffers[slot]);
   GL(gpu, BindBuffer)(target, mesh->buffers[slot]);
   GL(gpu, BufferData)(target, (GLsizeiptr)bytes, data, GL_STATIC_DRAW);
-  result = pn_memory_check(gpu, bytes);
-  pn_memory_give(gpu, result == PN_OK ? mesh->bytes[slot] : bytes);
+  result = pni_memory_check(gpu, bytes);
+  pni_memory_give(gpu, result == PN_OK ? mesh->bytes[slot] : bytes);
   if (result == PN_OK) mesh->bytes[slot] = bytes;
   return result;
 }
 
 /* The span's elements tightly packed into a buffer of ours. */
-static pn_result upload_span(pn_gpu *gpu, pn_mesh_data *mesh, int slot, const pn_span *span, size_t element) {
+static pn_result upload_span(pni_gpu *gpu, pni_mesh_data *mesh, int slot, const pn_span *span, size_t element) {
   if (!span->stride || span->stride == element)
     return upload(gpu, mesh, slot, GL_ARRAY_BUFFER, span_at(span, element, 0), span->count * element);
-  char *packed = pn_reallocate(gpu, NULL, span->count * element);
+  char *packed = pni_reallocate(gpu, NULL, span->count * element);
   if (!packed) return PN_ERROR_OUT_OF_MEMORY;
   for (size_t i = 0; i < span->count; i++) memcpy(packed + i * element, span_at(span, element, i), element);
   pn_result result = upload(gpu, mesh, slot, GL_ARRAY_BUFFER, packed, span->count * element);
-  pn_free(gpu, packed);
+  pni_free(gpu, packed);
   return result;
 }
 
-static void point_attribute(pn_gpu *gpu, GLuint index, GLint floats, const pn_span *span, pn_gl own) {
+static void point_attribute(pni_gpu *gpu, GLuint index, GLint floats, const pn_span *span, pn_gl own) {
   size_t packed = (size_t)floats * sizeof(float);
   size_t offset = own ? 0 : span->offset;
   size_t stride = own || !span->stride ? packed : span->stride;
@@ -204,7 +204,7 @@ static void point_attribute(pn_gpu *gpu, GLuint index, GLint floats, const pn_sp
   GL(gpu, VertexAttribPointer)(index, floats, GL_FLOAT, GL_FALSE, (GLsizei)stride, (const void *)(uintptr_t)offset);
 }
 
-static pn_result upload_positions(pn_gpu *gpu, pn_mesh_data *mesh, const pn_mesh_desc *d) {
+static pn_result upload_positions(pni_gpu *gpu, pni_mesh_data *mesh, const pn_mesh_desc *d) {
   if (d->positions.data) {
     pn_result result = upload_span(gpu, mesh, 0, &d->positions, 12);
     if (result != PN_OK) return result;
@@ -220,40 +220,40 @@ static pn_result upload_positions(pn_gpu *gpu, pn_mesh_data *mesh, const pn_mesh
 }
 
 /* Filters the kept triangles against positions, and uploads what is left. */
-static pn_result upload_triangles(pn_gpu *gpu, pn_mesh_data *mesh, const pn_span *positions) {
-  uint32_t *kept = pn_reallocate(gpu, NULL, mesh->kept_count * sizeof *kept);
+static pn_result upload_triangles(pni_gpu *gpu, pni_mesh_data *mesh, const pn_span *positions) {
+  uint32_t *kept = pni_reallocate(gpu, NULL, mesh->kept_count * sizeof *kept);
   if (!kept) return PN_ERROR_OUT_OF_MEMORY;
   size_t count = filter_triangles(mesh, positions, kept), total = mesh->kept_count / 3;
   pn_result result = PN_OK;
   if (count > 0) result = upload(gpu, mesh, 1, GL_ELEMENT_ARRAY_BUFFER, kept, 3 * count * sizeof *kept);
-  pn_free(gpu, kept);
+  pni_free(gpu, kept);
   if (result != PN_OK) return result;
   mesh->draw_count = 3 * count;
   mesh->index_bytes = 4;
   if (count < total)
-    pn_note(gpu, PN_LOG_WARNING, PN_MESSAGE_MESH_DROPPED, "%zu of %zu triangles dropped: without area, or not finite",
-            total - count, total);
+    pni_note(gpu, PN_LOG_WARNING, PN_MESSAGE_MESH_DROPPED, "%zu of %zu triangles dropped: without area, or not finite",
+             total - count, total);
   return PN_OK;
 }
 
-static pn_result take_triangles(pn_gpu *gpu, pn_mesh_data *mesh, const pn_mesh_desc *d) {
+static pn_result take_triangles(pni_gpu *gpu, pni_mesh_data *mesh, const pn_mesh_desc *d) {
   mesh->kept_count = d->index_bytes ? d->indices.count : d->positions.count;
-  mesh->kept_indices = pn_reallocate(gpu, NULL, mesh->kept_count * sizeof *mesh->kept_indices);
+  mesh->kept_indices = pni_reallocate(gpu, NULL, mesh->kept_count * sizeof *mesh->kept_indices);
   if (!mesh->kept_indices) return PN_ERROR_OUT_OF_MEMORY;
   pn_result result = copy_indices(gpu, d, mesh->kept_indices);
   return result == PN_OK ? upload_triangles(gpu, mesh, &d->positions) : result;
 }
 
-static pn_result bind_host_indices(pn_gpu *gpu, pn_mesh_data *mesh, const pn_mesh_desc *d) {
+static pn_result bind_host_indices(pni_gpu *gpu, pni_mesh_data *mesh, const pn_mesh_desc *d) {
   mesh->index_bytes = d->index_bytes;
   mesh->draw_count = d->index_bytes ? d->indices.count : d->positions.count;
   if (!d->index_bytes) return PN_OK;
   if (d->indices.data) { /* positions in a GL buffer: their values are unknown, only the count can be checked */
-    uint32_t *wide = pn_reallocate(gpu, NULL, d->indices.count * sizeof *wide);
+    uint32_t *wide = pni_reallocate(gpu, NULL, d->indices.count * sizeof *wide);
     if (!wide) return PN_ERROR_OUT_OF_MEMORY;
     pn_result result = copy_indices(gpu, d, wide);
     if (result == PN_OK) result = upload(gpu, mesh, 1, GL_ELEMENT_ARRAY_BUFFER, wide, d->indices.count * sizeof *wide);
-    pn_free(gpu, wide);
+    pni_free(gpu, wide);
     mesh->index_bytes = 4;
     return result;
   }
@@ -261,7 +261,7 @@ static pn_result bind_host_indices(pn_gpu *gpu, pn_mesh_data *mesh, const pn_mes
   return PN_OK;
 }
 
-static void describe(pn_mesh_data *mesh, const pn_mesh_desc *d) {
+static void describe(pni_mesh_data *mesh, const pn_mesh_desc *d) {
   mesh->positions = d->positions;
   mesh->indices = d->indices;
   mesh->texcoords = d->texcoords;
@@ -272,18 +272,18 @@ static void describe(pn_mesh_data *mesh, const pn_mesh_desc *d) {
   mesh->clockwise = d->clockwise != 0;
 }
 
-static void given_box(pn_mesh_data *mesh, const float min[3], const float max[3]) {
+static void given_box(pni_mesh_data *mesh, const float min[3], const float max[3]) {
   memcpy(mesh->boxes[0].min, min, 12);
   memcpy(mesh->boxes[0].max, max, 12);
   mesh->box_count = 1;
   mesh->box_triangles = 0;
 }
 
-pn_result pn_mesh_build(pn_gpu *gpu, const pn_mesh_desc *d, pn_mesh_data *mesh) {
+pn_result pni_mesh_build(pni_gpu *gpu, const pn_mesh_desc *d, pni_mesh_data *mesh) {
   memset(mesh, 0, sizeof *mesh);
   describe(mesh, d);
   bool boxed = !equal3(d->bounds_min, d->bounds_max);
-  mesh->boxes = pn_reallocate(gpu, NULL, (PN_BOXES_MAX + 1) * sizeof *mesh->boxes);
+  mesh->boxes = pni_reallocate(gpu, NULL, (PNI_BOXES_MAX + 1) * sizeof *mesh->boxes);
   if (!mesh->boxes) return PN_ERROR_OUT_OF_MEMORY;
   GL(gpu, GenVertexArrays)(1, &mesh->vertex_array);
   GL(gpu, BindVertexArray)(mesh->vertex_array);
@@ -293,11 +293,11 @@ pn_result pn_mesh_build(pn_gpu *gpu, const pn_mesh_desc *d, pn_mesh_data *mesh) 
   if (result == PN_OK && boxed) given_box(mesh, d->bounds_min, d->bounds_max);
   if (result == PN_OK) result = upload_positions(gpu, mesh, d);
   GL(gpu, BindVertexArray)(0);
-  if (result != PN_OK) pn_mesh_drop(gpu, mesh, false);
+  if (result != PN_OK) pni_mesh_drop(gpu, mesh, false);
   return result;
 }
 
-pn_result pn_mesh_deform(pn_gpu *gpu, pn_mesh_data *mesh, const pn_span *positions, const float *bounds) {
+pn_result pni_mesh_deform(pni_gpu *gpu, pni_mesh_data *mesh, const pn_span *positions, const float *bounds) {
   pn_result result = PN_OK;
   if (positions) {
     GL(gpu, BindVertexArray)(mesh->vertex_array);
@@ -311,15 +311,15 @@ pn_result pn_mesh_deform(pn_gpu *gpu, pn_mesh_data *mesh, const pn_span *positio
   return result;
 }
 
-void pn_mesh_drop(pn_gpu *gpu, pn_mesh_data *mesh, bool abandon) {
-  pn_mesh_edges_free(gpu, &mesh->edges, abandon);
+void pni_mesh_drop(pni_gpu *gpu, pni_mesh_data *mesh, bool abandon) {
+  pni_mesh_edges_free(gpu, &mesh->edges, abandon);
   if (!abandon) {
     if (mesh->vertex_array) GL(gpu, DeleteVertexArrays)(1, &mesh->vertex_array);
     for (int i = 0; i < 3; i++)
       if (mesh->buffers[i]) GL(gpu, DeleteBuffers)(1, &mesh->buffers[i]);
   }
-  for (int i = 0; i < 3; i++) pn_memory_give(gpu, mesh->bytes[i]);
-  pn_free(gpu, mesh->kept_indices);
-  pn_free(gpu, mesh->boxes);
+  for (int i = 0; i < 3; i++) pni_memory_give(gpu, mesh->bytes[i]);
+  pni_free(gpu, mesh->kept_indices);
+  pni_free(gpu, mesh->boxes);
   memset(mesh, 0, sizeof *mesh);
 }

@@ -9,9 +9,9 @@
 static int rows_of(size_t entries, size_t row) { return (int)((entries + row - 1) / row); }
 
 /* count entries of the texture's format, from memory or, with a buffer bound for unpacking, from an offset in it. */
-static void fill(pn_gpu *gpu, const pn_texture *t, GLenum layout, GLenum type, size_t bytes, const void *data,
+static void fill(pni_gpu *gpu, const pni_texture *t, GLenum layout, GLenum type, size_t bytes, const void *data,
                  size_t count) {
-  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PN_UNIT_WORK);
+  GL(gpu, ActiveTexture)(GL_TEXTURE0 + PNI_UNIT_WORK);
   GL(gpu, BindTexture)(GL_TEXTURE_2D, t->id);
   size_t row = (size_t)t->width, rows = count / row, rest = count % row;
   if (rows) GL(gpu, TexSubImage2D)(GL_TEXTURE_2D, 0, 0, 0, t->width, (GLsizei)rows, layout, type, data);
@@ -20,9 +20,9 @@ static void fill(pn_gpu *gpu, const pn_texture *t, GLenum layout, GLenum type, s
   GL(gpu, BindTexture)(GL_TEXTURE_2D, 0);
 }
 
-static pn_result table(pn_gpu *gpu, pn_texture *t, GLenum format, GLenum layout, const void *data, size_t count,
+static pn_result table(pni_gpu *gpu, pni_texture *t, GLenum format, GLenum layout, const void *data, size_t count,
                        size_t bytes) {
-  pn_result result = pn_texture_shape(gpu, t, format, PN_EDGE_ROW, rows_of(count, PN_EDGE_ROW), 0, 1);
+  pn_result result = pni_texture_shape(gpu, t, format, PNI_EDGE_ROW, rows_of(count, PNI_EDGE_ROW), 0, 1);
   if (result == PN_OK) fill(gpu, t, layout, GL_UNSIGNED_INT, bytes, data, count);
   return result;
 }
@@ -30,15 +30,15 @@ static pn_result table(pn_gpu *gpu, pn_texture *t, GLenum format, GLenum layout,
 /* ---- reading the mesh back --------------------------------------------------------------------------------------- */
 
 /* The buffer that holds the positions, and their layout in it. */
-static pn_span positions_of(const pn_mesh_data *mesh) {
+static pn_span positions_of(const pni_mesh_data *mesh) {
   if (mesh->buffers[0]) return (pn_span){mesh->buffers[0], NULL, 0, 12, mesh->positions.count};
   pn_span span = mesh->positions;
   if (!span.stride) span.stride = 12;
   return span;
 }
 
-static void *read_buffer(pn_gpu *gpu, pn_gl buffer, size_t offset, size_t bytes) {
-  void *out = pn_reallocate(gpu, NULL, bytes);
+static void *read_buffer(pni_gpu *gpu, pn_gl buffer, size_t offset, size_t bytes) {
+  void *out = pni_reallocate(gpu, NULL, bytes);
   if (!out) return NULL;
   GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, buffer);
   GL(gpu, GetBufferSubData)(GL_ARRAY_BUFFER, (GLintptr)offset, (GLsizeiptr)bytes, out);
@@ -46,7 +46,7 @@ static void *read_buffer(pn_gpu *gpu, pn_gl buffer, size_t offset, size_t bytes)
   return out;
 }
 
-static float *read_positions(pn_gpu *gpu, const pn_mesh_data *mesh) {
+static float *read_positions(pni_gpu *gpu, const pni_mesh_data *mesh) {
   pn_span span = positions_of(mesh);
   char *bytes = read_buffer(gpu, span.buffer, span.offset, (span.count - 1) * span.stride + 12);
   for (size_t i = 1; bytes && span.stride != 12 && i < span.count; i++)
@@ -54,34 +54,34 @@ static float *read_positions(pn_gpu *gpu, const pn_mesh_data *mesh) {
   return (float *)(void *)bytes;
 }
 
-static uint32_t *read_indices(pn_gpu *gpu, const pn_mesh_data *mesh) {
+static uint32_t *read_indices(pni_gpu *gpu, const pni_mesh_data *mesh) {
   size_t count = mesh->draw_count;
   bool narrow = mesh->index_bytes == 2;
   if (mesh->index_bytes && !narrow) {
     pn_gl own = mesh->buffers[1];
     return read_buffer(gpu, own ? own : mesh->indices.buffer, own ? 0 : mesh->indices.offset, count * 4);
   }
-  uint32_t *out = pn_reallocate(gpu, NULL, count * sizeof *out);
+  uint32_t *out = pni_reallocate(gpu, NULL, count * sizeof *out);
   for (size_t i = 0; out && !narrow && i < count; i++) out[i] = (uint32_t)i;
   if (!out || !narrow) return out;
   uint16_t *read = read_buffer(gpu, mesh->indices.buffer, mesh->indices.offset, count * 2);
   for (size_t i = 0; read && i < count; i++) out[i] = read[i];
-  if (!read) pn_free(gpu, out);
+  if (!read) pni_free(gpu, out);
   bool done = read != NULL;
-  pn_free(gpu, read);
+  pni_free(gpu, read);
   return done ? out : NULL;
 }
 
 /* ---- positions --------------------------------------------------------------------------------------------------- */
 
 /* From buffer to texture without passing through here, where the layout is whole floats. */
-static pn_result copy_positions(pn_gpu *gpu, const pn_mesh_data *mesh, pn_mesh_edges *e) {
+static pn_result copy_positions(pni_gpu *gpu, const pni_mesh_data *mesh, pni_mesh_edges *e) {
   pn_span span = positions_of(mesh);
   bool floats = span.stride % 4 == 0 && span.offset % 4 == 0;
   size_t stride = floats ? span.stride / 4 : 3, count = (span.count - 1) * stride + 3;
-  if (rows_of(count, PN_POSITION_ROW) > gpu->can.texture_size_max) floats = false, stride = 3, count = 3 * span.count;
+  if (rows_of(count, PNI_POSITION_ROW) > gpu->can.texture_size_max) floats = false, stride = 3, count = 3 * span.count;
   pn_result result =
-      pn_texture_shape(gpu, &e->positions, GL_R32F, PN_POSITION_ROW, rows_of(count, PN_POSITION_ROW), 0, 1);
+      pni_texture_shape(gpu, &e->positions, GL_R32F, PNI_POSITION_ROW, rows_of(count, PNI_POSITION_ROW), 0, 1);
   if (result != PN_OK) return result;
   e->stride = (int)stride;
   e->stale = false;
@@ -94,60 +94,60 @@ static pn_result copy_positions(pn_gpu *gpu, const pn_mesh_data *mesh, pn_mesh_e
   float *read = read_positions(gpu, mesh);
   if (!read) return PN_ERROR_OUT_OF_MEMORY;
   fill(gpu, &e->positions, GL_RED, GL_FLOAT, 4, read, count);
-  pn_free(gpu, read);
+  pni_free(gpu, read);
   return PN_OK;
 }
 
 /* ---- all of it --------------------------------------------------------------------------------------------------- */
 
-static void report(pn_gpu *gpu, const pn_mesh_data *mesh, const pn_edge_list *list) {
+static void report(pni_gpu *gpu, const pni_mesh_data *mesh, const pni_edge_list *list) {
   if (!list->open && !list->crowded && !list->opposed && !list->dropped) return;
-  pn_note(gpu, PN_LOG_INFO, PN_MESSAGE_MESH_EDGES,
-          "mesh %u, %zu edges: %zu open, %zu of three and more faces, %zu between faces wound against each other; "
-          "%zu triangles without three corners",
-          mesh->id, list->count, list->open, list->crowded, list->opposed, list->dropped);
+  pni_note(gpu, PN_LOG_INFO, PN_MESSAGE_MESH_EDGES,
+           "mesh %u, %zu edges: %zu open, %zu of three and more faces, %zu between faces wound against each other; "
+           "%zu triangles without three corners",
+           mesh->id, list->count, list->open, list->crowded, list->opposed, list->dropped);
 }
 
-static pn_result find_edges(pn_gpu *gpu, const pn_mesh_data *mesh, pn_edge_list *list) {
+static pn_result find_edges(pni_gpu *gpu, const pni_mesh_data *mesh, pni_edge_list *list) {
   bool kept = mesh->kept_indices != NULL; /* all triangles, those too that have area in other poses only */
   float *positions = read_positions(gpu, mesh);
   uint32_t *indices = kept ? mesh->kept_indices : read_indices(gpu, mesh);
   pn_result result = PN_ERROR_OUT_OF_MEMORY;
   if (positions && indices)
-    result =
-        pn_edges_find(gpu, positions, mesh->positions.count, indices, kept ? mesh->kept_count : mesh->draw_count, list);
-  pn_free(gpu, positions);
-  if (!kept) pn_free(gpu, indices);
+    result = pni_edges_find(gpu, positions, mesh->positions.count, indices, kept ? mesh->kept_count : mesh->draw_count,
+                            list);
+  pni_free(gpu, positions);
+  if (!kept) pni_free(gpu, indices);
   if (result == PN_OK) report(gpu, mesh, list);
   return result;
 }
 
-static pn_result upload(pn_gpu *gpu, const pn_edge_list *list, pn_mesh_edges *e) {
+static pn_result upload(pni_gpu *gpu, const pni_edge_list *list, pni_mesh_edges *e) {
   e->count = list->count;
   e->vertices = list->vertices;
   e->stale = true;
   if (!list->count) return PN_OK;
-  int rows = rows_of(list->count, PN_EDGE_ROW), points = rows_of(list->vertices, PN_EDGE_ROW);
+  int rows = rows_of(list->count, PNI_EDGE_ROW), points = rows_of(list->vertices, PNI_EDGE_ROW);
   pn_result result = table(gpu, &e->edges, GL_RGBA32UI, GL_RGBA_INTEGER, list->edges, list->count, 16);
   if (result == PN_OK) result = table(gpu, &e->rings, GL_RG32UI, GL_RG_INTEGER, list->rings, list->vertices, 8);
   if (result == PN_OK) result = table(gpu, &e->entries, GL_RG32UI, GL_RG_INTEGER, list->entries, 2 * list->count, 8);
-  if (result == PN_OK) result = pn_texture_shape(gpu, &e->points, GL_RGBA32F, PN_EDGE_ROW, points, 0, 1);
-  if (result == PN_OK) result = pn_texture_shape(gpu, &e->sides, GL_R8, PN_EDGE_ROW, rows, 0, 1);
+  if (result == PN_OK) result = pni_texture_shape(gpu, &e->points, GL_RGBA32F, PNI_EDGE_ROW, points, 0, 1);
+  if (result == PN_OK) result = pni_texture_shape(gpu, &e->sides, GL_R8, PNI_EDGE_ROW, rows, 0, 1);
   return result;
 }
 
-static pn_result make_edges(pn_gpu *gpu, pn_mesh_data *mesh) {
-  pn_edge_list list;
+static pn_result make_edges(pni_gpu *gpu, pni_mesh_data *mesh) {
+  pni_edge_list list;
   pn_result result = find_edges(gpu, mesh, &list);
   if (result != PN_OK) return result;
-  mesh->edges = pn_allocate_zero(gpu, sizeof *mesh->edges);
+  mesh->edges = pni_allocate_zero(gpu, sizeof *mesh->edges);
   result = mesh->edges ? upload(gpu, &list, mesh->edges) : PN_ERROR_OUT_OF_MEMORY;
-  pn_edges_free(gpu, &list);
-  if (result != PN_OK) pn_mesh_edges_free(gpu, &mesh->edges, false);
+  pni_edges_free(gpu, &list);
+  if (result != PN_OK) pni_mesh_edges_free(gpu, &mesh->edges, false);
   return result;
 }
 
-pn_result pn_mesh_edges_get(pn_gpu *gpu, pn_mesh_data *mesh, pn_mesh_edges **out) {
+pn_result pni_mesh_edges_get(pni_gpu *gpu, pni_mesh_data *mesh, pni_mesh_edges **out) {
   *out = NULL;
   if (!mesh->draw_count && !mesh->kept_indices) return PN_OK;
   pn_result result = mesh->edges ? PN_OK : make_edges(gpu, mesh);
@@ -157,13 +157,13 @@ pn_result pn_mesh_edges_get(pn_gpu *gpu, pn_mesh_data *mesh, pn_mesh_edges **out
   return result;
 }
 
-void pn_mesh_edges_free(pn_gpu *gpu, pn_mesh_edges **edges, bool abandon) {
-  pn_mesh_edges *e = *edges;
+void pni_mesh_edges_free(pni_gpu *gpu, pni_mesh_edges **edges, bool abandon) {
+  pni_mesh_edges *e = *edges;
   if (!e) return;
-  pn_texture *all[] = {&e->positions, &e->edges,   &e->rings,   &e->entries, &e->points, &e->sides,
-                       &e->kept,      &e->sums[0], &e->sums[1], &e->sums[2], &e->total,  &e->list};
-  pn_buffer_free(gpu, &e->arguments, abandon);
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) pn_texture_free(gpu, all[i], abandon);
-  pn_free(gpu, e);
+  pni_texture *all[] = {&e->positions, &e->edges,   &e->rings,   &e->entries, &e->points, &e->sides,
+                        &e->kept,      &e->sums[0], &e->sums[1], &e->sums[2], &e->total,  &e->list};
+  pni_buffer_free(gpu, &e->arguments, abandon);
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) pni_texture_free(gpu, all[i], abandon);
+  pni_free(gpu, e);
   *edges = NULL;
 }

@@ -5,30 +5,30 @@
 
 #include "gl/gpu.h"
 
-enum { PN_CLOCK_MARKS = 48, PN_CLOCK_FRAMES = 4 };
+enum { PNI_CLOCK_MARKS = 48, PNI_CLOCK_FRAMES = 4 };
 
 typedef struct {
-  const char *stage[PN_CLOCK_MARKS]; /* stage[i] lies between marks i-1 and i; stage[0] is NULL, the start */
-  pn_gl query[PN_CLOCK_MARKS];
-  double now[PN_CLOCK_MARKS]; /* software: milliseconds */
+  const char *stage[PNI_CLOCK_MARKS]; /* stage[i] lies between marks i-1 and i; stage[0] is NULL, the start */
+  pn_gl query[PNI_CLOCK_MARKS];
+  double now[PNI_CLOCK_MARKS]; /* software: milliseconds */
   int marks;
   bool pending; /* on hardware: not read yet */
-} pn_clock_frame;
+} pni_clock_frame;
 
 typedef struct {
-  pn_clock_frame frames[PN_CLOCK_FRAMES];
+  pni_clock_frame frames[PNI_CLOCK_FRAMES];
   int current;
   bool running;
-  const char *stage[PN_CLOCK_MARKS]; /* of the latest frame that is known */
-  double milliseconds[PN_CLOCK_MARKS];
+  const char *stage[PNI_CLOCK_MARKS]; /* of the latest frame that is known */
+  double milliseconds[PNI_CLOCK_MARKS];
   int count;
-} pn_clock;
+} pni_clock;
 
-void pn_clock_start(pn_gpu *gpu, pn_clock *clock); /* a frame begins; nothing while timing is off */
+void pni_clock_start(pni_gpu *gpu, pni_clock *clock); /* a frame begins; nothing while timing is off */
 /* what was drawn since the last mark was this stage */
-void pn_clock_mark(pn_gpu *gpu, pn_clock *clock, const char *stage);
-void pn_clock_end(pn_gpu *gpu, pn_clock *clock);
-void pn_clock_read(pn_gpu *gpu, pn_clock *clock, bool wait); /* brings stage, milliseconds, count up to date */
-void pn_clock_free(pn_gpu *gpu, pn_clock *clock, bool abandon);
+void pni_clock_mark(pni_gpu *gpu, pni_clock *clock, const char *stage);
+void pni_clock_end(pni_gpu *gpu, pni_clock *clock);
+void pni_clock_read(pni_gpu *gpu, pni_clock *clock, bool wait); /* brings stage, milliseconds, count up to date */
+void pni_clock_free(pni_gpu *gpu, pni_clock *clock, bool abandon);
 
 #endif

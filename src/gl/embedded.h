@@ -5,10 +5,10 @@
 typedef struct {
   const char *path; /* relative to src/, for example "techniques/hard/hard.glsl" */
   const char *text; /* the file's bytes, zero-terminated; #include lines are not resolved */
-} pn_embedded_shader;
+} pni_embedded_shader;
 
 /* Sorted by path; one more entry of two NULLs follows the last. */
-extern const pn_embedded_shader pn_embedded_shaders[];
-extern const int pn_embedded_shader_count;
+extern const pni_embedded_shader pni_embedded_shaders[];
+extern const int pni_embedded_shader_count;
 
 #endif

@@ -5,7 +5,7 @@
 
 #include <epoxy/gl.h>
 
-#define PN_GL_REQUIRED(X) \
+#define PNI_GL_REQUIRED(X) \
   X(PFNGLACTIVETEXTUREPROC, ActiveTexture) \
   X(PFNGLATTACHSHADERPROC, AttachShader) \
   X(PFNGLBINDBUFFERPROC, BindBuffer) \
@@ -120,7 +120,7 @@
   X(PFNGLVIEWPORTPROC, Viewport)
 
 /* Newer than 3.3, or an extension: NULL where the context has them not. */
-#define PN_GL_OPTIONAL(X) \
+#define PNI_GL_OPTIONAL(X) \
   X(PFNGLCLIPCONTROLPROC, ClipControl) \
   X(PFNGLBLENDEQUATIONSEPARATEIPROC, BlendEquationSeparatei) \
   X(PFNGLBLENDFUNCSEPARATEIPROC, BlendFuncSeparatei) \
@@ -132,16 +132,16 @@
 
 typedef struct {
 #define X(type, name) type *name;
-  PN_GL_REQUIRED(X) PN_GL_OPTIONAL(X)
+  PNI_GL_REQUIRED(X) PNI_GL_OPTIONAL(X)
 #undef X
-} pn_gl_table;
+} pni_gl_table;
 
 /* Where a host's loader puts what it finds. */
 typedef struct {
 #define X(type, name) type name;
-  PN_GL_REQUIRED(X) PN_GL_OPTIONAL(X)
+  PNI_GL_REQUIRED(X) PNI_GL_OPTIONAL(X)
 #undef X
-} pn_gl_storage;
+} pni_gl_storage;
 
 #define GL(gpu, name) (*(gpu)->gl.name)
 

@@ -11,26 +11,26 @@
 
 #include "gl/program.h"
 
-void *pn_reallocate(pn_gpu *gpu, void *old, size_t bytes) {
+void *pni_reallocate(pni_gpu *gpu, void *old, size_t bytes) {
   void *memory = gpu->desc.allocate ? gpu->desc.allocate(gpu->desc.user, old, bytes) : realloc(old, bytes);
   if (!memory && bytes)
-    pn_fail(gpu, PN_ERROR_OUT_OF_MEMORY, PN_MESSAGE_OUT_OF_MEMORY, "no memory for %zu bytes", bytes);
+    pni_fail(gpu, PN_ERROR_OUT_OF_MEMORY, PN_MESSAGE_OUT_OF_MEMORY, "no memory for %zu bytes", bytes);
   return memory;
 }
 
-void *pn_allocate_zero(pn_gpu *gpu, size_t bytes) {
-  void *memory = pn_reallocate(gpu, NULL, bytes ? bytes : 1);
+void *pni_allocate_zero(pni_gpu *gpu, size_t bytes) {
+  void *memory = pni_reallocate(gpu, NULL, bytes ? bytes : 1);
   if (memory) memset(memory, 0, bytes);
   return memory;
 }
 
-void pn_free(pn_gpu *gpu, void *memory) {
+void pni_free(pni_gpu *gpu, void *memory) {
   if (!memory) return;
   if (gpu->desc.allocate) gpu->desc.allocate(gpu->desc.user, memory, 0);
   else free(memory);
 }
 
-static void send(pn_gpu *gpu, pn_log_level level, pn_message message, const char *format, va_list arguments) {
+static void send(pni_gpu *gpu, pn_log_level level, pn_message message, const char *format, va_list arguments) {
   if (!gpu->desc.log) return;
   char text[1024];
   vsnprintf(text, sizeof text, format, arguments);
@@ -39,7 +39,7 @@ static void send(pn_gpu *gpu, pn_log_level level, pn_message message, const char
   gpu->desc.log(gpu->desc.user, level, (int)message, text);
 }
 
-pn_result pn_fail(pn_gpu *gpu, pn_result result, pn_message message, const char *format, ...) {
+pn_result pni_fail(pni_gpu *gpu, pn_result result, pn_message message, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   send(gpu, PN_LOG_ERROR, message, format, arguments);
@@ -47,21 +47,21 @@ pn_result pn_fail(pn_gpu *gpu, pn_result result, pn_message message, const char 
   return result;
 }
 
-void pn_note(pn_gpu *gpu, pn_log_level level, pn_message message, const char *format, ...) {
+void pni_note(pni_gpu *gpu, pn_log_level level, pn_message message, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   send(gpu, level, message, format, arguments);
   va_end(arguments);
 }
 
-static void use_epoxy(pn_gpu *gpu) {
+static void use_epoxy(pni_gpu *gpu) {
 #define X(type, name) gpu->gl.name = &epoxy_gl##name;
-  PN_GL_REQUIRED(X)
-  PN_GL_OPTIONAL(X)
+  PNI_GL_REQUIRED(X)
+  PNI_GL_OPTIONAL(X)
 #undef X
 }
 
-static const char *use_loader(pn_gpu *gpu) {
+static const char *use_loader(pni_gpu *gpu) {
   const char *missing = NULL;
 #define X(type, name) \
   { \
@@ -70,14 +70,14 @@ static const char *use_loader(pn_gpu *gpu) {
     gpu->gl.name = &gpu->storage.name; \
     if (!found && !missing) missing = "gl" #name; \
   }
-  PN_GL_REQUIRED(X)
+  PNI_GL_REQUIRED(X)
   const char *required = missing;
-  PN_GL_OPTIONAL(X)
+  PNI_GL_OPTIONAL(X)
 #undef X
   return required;
 }
 
-static bool has_extension(pn_gpu *gpu, const char *name) {
+static bool has_extension(pni_gpu *gpu, const char *name) {
   GLint count = 0;
   GL(gpu, GetIntegerv)(GL_NUM_EXTENSIONS, &count);
   for (GLint i = 0; i < count; i++) {
@@ -94,8 +94,8 @@ static bool is_software(const char *renderer) {
   return false;
 }
 
-static void read_capabilities(pn_gpu *gpu) {
-  pn_capabilities *can = &gpu->can;
+static void read_capabilities(pni_gpu *gpu) {
+  pni_capabilities *can = &gpu->can;
   const char *renderer = (const char *)GL(gpu, GetString)(GL_RENDERER);
   can->software = renderer && is_software(renderer);
   GLint profile = 0;
@@ -139,26 +139,26 @@ static bool glx_is_current(void) {
 }
 
 /* libepoxy aborts the program when it resolves a function without a current context; ask before it does. */
-static bool context_is_current(const pn_gpu *gpu) {
+static bool context_is_current(const pni_gpu *gpu) {
   return gpu->desc.get_proc_address || (epoxy_has_egl() && eglGetCurrentContext()) || glx_is_current();
 }
 
-static pn_result check_version(pn_gpu *gpu) {
+static pn_result check_version(pni_gpu *gpu) {
   if (!context_is_current(gpu))
-    return pn_fail(gpu, PN_ERROR_CONTEXT_LOST, PN_MESSAGE_GL_LOST, "no GL context is current");
+    return pni_fail(gpu, PN_ERROR_CONTEXT_LOST, PN_MESSAGE_GL_LOST, "no GL context is current");
   const char *version = (const char *)GL(gpu, GetString)(GL_VERSION);
-  if (!version) return pn_fail(gpu, PN_ERROR_CONTEXT_LOST, PN_MESSAGE_GL_LOST, "no GL context is current");
+  if (!version) return pni_fail(gpu, PN_ERROR_CONTEXT_LOST, PN_MESSAGE_GL_LOST, "no GL context is current");
   if (!strncmp(version, "OpenGL ES", 9))
-    return pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_GL_VERSION, "OpenGL 3.3 core is needed, this is %s", version);
+    return pni_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_GL_VERSION, "OpenGL 3.3 core is needed, this is %s", version);
   int major = 0, minor = 0;
   sscanf(version, "%d.%d", &major, &minor);
   gpu->can.version = major * 10 + minor;
   if (gpu->can.version < 33)
-    return pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_GL_VERSION, "OpenGL 3.3 core is needed, this is %s", version);
+    return pni_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_GL_VERSION, "OpenGL 3.3 core is needed, this is %s", version);
   return PN_OK;
 }
 
-static void make_shared_objects(pn_gpu *gpu) {
+static void make_shared_objects(pni_gpu *gpu) {
   GL(gpu, GenVertexArrays)(1, &gpu->vertex_array);
   GL(gpu, GenFramebuffers)(1, &gpu->framebuffer);
   GL(gpu, GenFramebuffers)(1, &gpu->read_framebuffer);
@@ -171,30 +171,30 @@ static void make_shared_objects(pn_gpu *gpu) {
     GL(gpu, SamplerParameteri)(gpu->sampler_nearest, parameters[i][0], (GLint)parameters[i][1]);
 }
 
-static pn_result copy_strings(pn_gpu *gpu) {
+static pn_result copy_strings(pni_gpu *gpu) {
   if ((int)gpu->desc.state < PN_STATE_RESTORE || gpu->desc.state > PN_STATE_RESET)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_STATE_MODE, "state mode %d is unknown", (int)gpu->desc.state);
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_STATE_MODE, "state mode %d is unknown", (int)gpu->desc.state);
   if (!gpu->desc.shader_directory) return PN_OK;
   FILE *directory = fopen(gpu->desc.shader_directory, "r");
   if (!directory)
-    return pn_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_SHADER_DIRECTORY, "cannot read the shader directory %s",
-                   gpu->desc.shader_directory);
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_SHADER_DIRECTORY, "cannot read the shader directory %s",
+                    gpu->desc.shader_directory);
   fclose(directory);
   size_t bytes = strlen(gpu->desc.shader_directory) + 1;
-  gpu->shader_directory = pn_reallocate(gpu, NULL, bytes);
+  gpu->shader_directory = pni_reallocate(gpu, NULL, bytes);
   if (!gpu->shader_directory) return PN_ERROR_OUT_OF_MEMORY;
   memcpy(gpu->shader_directory, gpu->desc.shader_directory, bytes);
   gpu->desc.shader_directory = gpu->shader_directory;
   return PN_OK;
 }
 
-pn_result pn_gpu_open(pn_gpu *gpu, const pn_context_desc *desc) {
+pn_result pni_gpu_open(pni_gpu *gpu, const pn_context_desc *desc) {
   memset(gpu, 0, sizeof *gpu);
   if (desc) gpu->desc = *desc;
   if (gpu->desc.get_proc_address) {
     const char *missing = use_loader(gpu);
     if (missing)
-      return pn_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_GL_FUNCTION, "get_proc_address has no %s", missing);
+      return pni_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_GL_FUNCTION, "get_proc_address has no %s", missing);
   } else {
     use_epoxy(gpu);
   }
@@ -206,18 +206,18 @@ pn_result pn_gpu_open(pn_gpu *gpu, const pn_context_desc *desc) {
   return PN_OK;
 }
 
-void pn_gpu_close(pn_gpu *gpu, bool abandon) {
-  pn_programs_free(gpu, abandon);
+void pni_gpu_close(pni_gpu *gpu, bool abandon) {
+  pni_programs_free(gpu, abandon);
   if (!abandon) {
     GL(gpu, DeleteVertexArrays)(1, &gpu->vertex_array);
     GL(gpu, DeleteFramebuffers)(1, &gpu->framebuffer);
     GL(gpu, DeleteFramebuffers)(1, &gpu->read_framebuffer);
     GL(gpu, DeleteSamplers)(1, &gpu->sampler_nearest);
   }
-  pn_free(gpu, gpu->shader_directory);
+  pni_free(gpu, gpu->shader_directory);
 }
 
-pn_result pn_gpu_check_lost(pn_gpu *gpu) {
+pn_result pni_gpu_check_lost(pni_gpu *gpu) {
   if (!gpu->can.robustness || GL(gpu, GetGraphicsResetStatus)() == GL_NO_ERROR) return PN_OK;
-  return pn_fail(gpu, PN_ERROR_CONTEXT_LOST, PN_MESSAGE_GL_LOST, "the GL context was reset");
+  return pni_fail(gpu, PN_ERROR_CONTEXT_LOST, PN_MESSAGE_GL_LOST, "the GL context was reset");
 }

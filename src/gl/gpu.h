@@ -1,4 +1,4 @@
-/* The GL context as the library sees it: functions, capabilities, memory, messages. Everything above holds a pn_gpu. */
+/* The GL context as the library sees it: functions, capabilities, memory, messages. Everything above holds a pni_gpu. */
 #ifndef PN_GL_GPU_H
 #define PN_GL_GPU_H
 
@@ -8,17 +8,17 @@
 
 /* Texture units the library uses, from 0. State saving covers exactly these. */
 enum {
-  PN_UNIT_MAPS = 0, /* the light's depth maps */
-  PN_UNIT_RANGE,    /* the light's range pyramid */
-  PN_UNIT_DEPTH,    /* the receiver's depth */
-  PN_UNIT_NORMAL,
-  PN_UNIT_MASK,
-  PN_UNIT_WORK, /* whatever a technique keeps between its passes */
-  PN_UNIT_PEEL,
-  PN_UNIT_ALPHA,
-  PN_UNIT_SEEN,       /* the receiver map */
-  PN_UNIT_SEEN_RANGE, /* its range pyramid */
-  PN_UNIT_COUNT
+  PNI_UNIT_MAPS = 0, /* the light's depth maps */
+  PNI_UNIT_RANGE,    /* the light's range pyramid */
+  PNI_UNIT_DEPTH,    /* the receiver's depth */
+  PNI_UNIT_NORMAL,
+  PNI_UNIT_MASK,
+  PNI_UNIT_WORK, /* whatever a technique keeps between its passes */
+  PNI_UNIT_PEEL,
+  PNI_UNIT_ALPHA,
+  PNI_UNIT_SEEN,       /* the receiver map */
+  PNI_UNIT_SEEN_RANGE, /* its range pyramid */
+  PNI_UNIT_COUNT
 };
 
 typedef struct {
@@ -33,14 +33,14 @@ typedef struct {
   bool indirect;      /* 4.0 or ARB_draw_indirect: draws whose counts lie in a buffer */
   bool fixed_restart; /* GL_PRIMITIVE_RESTART_FIXED_INDEX, 4.3 */
   int texture_size_max, layers_max, draw_buffers, subpixel_bits, clip_distances, sample_mask_words;
-} pn_capabilities;
+} pni_capabilities;
 
-typedef struct pn_program pn_program;
+typedef struct pni_program pni_program;
 
-typedef struct pn_gpu {
-  pn_gl_table gl;
-  pn_gl_storage storage;
-  pn_capabilities can;
+typedef struct pni_gpu {
+  pni_gl_table gl;
+  pni_gl_storage storage;
+  pni_capabilities can;
   pn_context_desc desc; /* the host's callbacks */
   char *shader_directory;
 
@@ -52,26 +52,26 @@ typedef struct pn_gpu {
   pn_gl framebuffer;  /* the one the passes draw to */
   pn_gl read_framebuffer;
   pn_gl sampler_nearest; /* no filtering, clamped, no comparison */
-  pn_program *programs;
-} pn_gpu;
+  pni_program *programs;
+} pni_gpu;
 
 /* Finds functions and capabilities and makes the shared objects. On failure everything is undone. */
-pn_result pn_gpu_open(pn_gpu *gpu, const pn_context_desc *desc);
+pn_result pni_gpu_open(pni_gpu *gpu, const pn_context_desc *desc);
 /* abandon: free memory without a GL call. */
-void pn_gpu_close(pn_gpu *gpu, bool abandon);
+void pni_gpu_close(pni_gpu *gpu, bool abandon);
 
 /* PN_ERROR_CONTEXT_LOST, with a message, when the GL context was reset, as far as the device tells. */
-pn_result pn_gpu_check_lost(pn_gpu *gpu);
+pn_result pni_gpu_check_lost(pni_gpu *gpu);
 
 /* Memory from the host's allocator. */
-void *pn_reallocate(pn_gpu *gpu, void *old, size_t bytes); /* NULL when out of memory, after a message */
-void *pn_allocate_zero(pn_gpu *gpu, size_t bytes);
-void pn_free(pn_gpu *gpu, void *memory);
+void *pni_reallocate(pni_gpu *gpu, void *old, size_t bytes); /* NULL when out of memory, after a message */
+void *pni_allocate_zero(pni_gpu *gpu, size_t bytes);
+void pni_free(pni_gpu *gpu, void *memory);
 
-/* Sends a message to the host. Returns result, so that a failure is one line: return pn_fail(...). */
-pn_result pn_fail(pn_gpu *gpu, pn_result result, pn_message message, const char *format, ...)
+/* Sends a message to the host. Returns result, so that a failure is one line: return pni_fail(...). */
+pn_result pni_fail(pni_gpu *gpu, pn_result result, pn_message message, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-void pn_note(pn_gpu *gpu, pn_log_level level, pn_message message, const char *format, ...)
+void pni_note(pni_gpu *gpu, pn_log_level level, pn_message message, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
 #endif

@@ -9,29 +9,29 @@ typedef struct {
   const char *vertex, *fragment; /* paths below src/, for example "shaders/screen.vert.glsl" */
   const char *more;              /* a second file for the fragment stage, after the first: a technique; or NULL */
   const char *defines;           /* lines "NAME VALUE\n", each becomes a #define; may be "" */
-} pn_program_key;
+} pni_program_key;
 
-enum { PN_UNIFORMS_MAX = 24, PN_UNIFORM_NAME = 32 };
+enum { PNI_UNIFORMS_MAX = 24, PNI_UNIFORM_NAME = 32 };
 
-struct pn_program {
+struct pni_program {
   pn_gl id;
   int uniform_count;
   struct {
-    char name[PN_UNIFORM_NAME];
+    char name[PNI_UNIFORM_NAME];
     GLint location;
-  } uniforms[PN_UNIFORMS_MAX];
+  } uniforms[PNI_UNIFORMS_MAX];
   char *key;
-  pn_program *next;
+  pni_program *next;
 };
 
 /* The program of that key, compiled now or earlier. */
-pn_result pn_program_get(pn_gpu *gpu, const pn_program_key *key, const pn_program **out);
+pn_result pni_program_get(pni_gpu *gpu, const pni_program_key *key, const pni_program **out);
 /* -1, which GL ignores, where the compiler found no use for the uniform. */
-GLint pn_uniform(const pn_program *program, const char *name);
-void pn_programs_free(pn_gpu *gpu, bool abandon);
+GLint pni_uniform(const pni_program *program, const char *name);
+void pni_programs_free(pni_gpu *gpu, bool abandon);
 
 /* The whole text of one stage, without #version: defines, then the files with their includes in place, each once.
- * paths ends with NULL. Owned by the caller (pn_free). */
-pn_result pn_shader_text(pn_gpu *gpu, const char *const *paths, const char *defines, char **out);
+ * paths ends with NULL. Owned by the caller (pni_free). */
+pn_result pni_shader_text(pni_gpu *gpu, const char *const *paths, const char *defines, char **out);
 
 #endif

@@ -22,7 +22,7 @@ static const GLenum switches[] = {
     GL_PRIMITIVE_RESTART_FIXED_INDEX, /* 4.3: last, so that older contexts leave it out */
 };
 enum { SWITCH_COUNT = sizeof switches / sizeof *switches };
-_Static_assert((int)SWITCH_COUNT == (int)PN_SWITCHES, "pn_gl_state.enabled has one entry for each switch");
+_Static_assert((int)SWITCH_COUNT == (int)PNI_SWITCHES, "pn_gl_state.enabled has one entry for each switch");
 
 enum { PIXEL_NAMES = 5 };
 static const GLenum pack_names[PIXEL_NAMES] = {GL_PACK_ALIGNMENT, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
@@ -32,26 +32,26 @@ static const GLenum unpack_names[PIXEL_NAMES] = {GL_UNPACK_ALIGNMENT, GL_UNPACK_
 static const GLint pixel_defaults[PIXEL_NAMES] = {4, 0, 0, 0, 0};
 
 static int least(int a, int b) { return a < b ? a : b; }
-static int switch_count(const pn_gpu *gpu) { return gpu->can.fixed_restart ? SWITCH_COUNT : SWITCH_COUNT - 1; }
-static int draw_buffers(const pn_gpu *gpu) { return least(gpu->can.draw_buffers, PN_DRAW_BUFFERS_SAVED); }
-static int clip_distances(const pn_gpu *gpu) { return least(gpu->can.clip_distances, PN_CLIP_DISTANCES_SAVED); }
+static int switch_count(const pni_gpu *gpu) { return gpu->can.fixed_restart ? SWITCH_COUNT : SWITCH_COUNT - 1; }
+static int draw_buffers(const pni_gpu *gpu) { return least(gpu->can.draw_buffers, PNI_DRAW_BUFFERS_SAVED); }
+static int clip_distances(const pni_gpu *gpu) { return least(gpu->can.clip_distances, PNI_CLIP_DISTANCES_SAVED); }
 
-void pn_set_viewport(pn_gpu *gpu, int x, int y, int width, int height) {
+void pni_set_viewport(pni_gpu *gpu, int x, int y, int width, int height) {
   if (gpu->can.viewports) GL(gpu, ViewportIndexedf)(0, (GLfloat)x, (GLfloat)y, (GLfloat)width, (GLfloat)height);
   else GL(gpu, Viewport)(x, y, width, height);
 }
 
-void pn_set_depth_range(pn_gpu *gpu, double near, double far) {
+void pni_set_depth_range(pni_gpu *gpu, double near, double far) {
   if (gpu->can.viewports) GL(gpu, DepthRangeIndexed)(0, near, far);
   else GL(gpu, DepthRange)(near, far);
 }
 
-void pn_set_scissor(pn_gpu *gpu, int x, int y, int width, int height) {
+void pni_set_scissor(pni_gpu *gpu, int x, int y, int width, int height) {
   if (gpu->can.viewports) GL(gpu, ScissorIndexed)(0, x, y, width, height);
   else GL(gpu, Scissor)(x, y, width, height);
 }
 
-void pn_set_switch(pn_gpu *gpu, GLenum name, bool on) {
+void pni_set_switch(pni_gpu *gpu, GLenum name, bool on) {
   bool indexed = gpu->can.viewports && name == GL_SCISSOR_TEST;
   if (indexed && on) GL(gpu, Enablei)(name, 0);
   else if (indexed) GL(gpu, Disablei)(name, 0);
@@ -60,7 +60,7 @@ void pn_set_switch(pn_gpu *gpu, GLenum name, bool on) {
 }
 
 /* Blend functions of draw buffer 0 only, where each has its own (4.0). */
-static void set_blend_functions(pn_gpu *gpu, const GLint equation[2], const GLint function[4]) {
+static void set_blend_functions(pni_gpu *gpu, const GLint equation[2], const GLint function[4]) {
   const GLenum e[2] = {(GLenum)equation[0], (GLenum)equation[1]};
   const GLenum f[4] = {(GLenum)function[0], (GLenum)function[1], (GLenum)function[2], (GLenum)function[3]};
   if (gpu->can.blend_buffers) {
@@ -72,17 +72,17 @@ static void set_blend_functions(pn_gpu *gpu, const GLint equation[2], const GLin
   }
 }
 
-void pn_set_blend(pn_gpu *gpu, pn_blend blend) {
-  if (blend == PN_BLEND_NONE) {
+void pni_set_blend(pni_gpu *gpu, pni_blend blend) {
+  if (blend == PNI_BLEND_NONE) {
     GL(gpu, Disablei)(GL_BLEND, 0);
     return;
   }
-  GLint equation = blend == PN_BLEND_MIN ? GL_MIN : GL_FUNC_ADD;
+  GLint equation = blend == PNI_BLEND_MIN ? GL_MIN : GL_FUNC_ADD;
   set_blend_functions(gpu, (GLint[2]){equation, equation}, (GLint[4]){GL_ONE, GL_ONE, GL_ONE, GL_ONE});
   GL(gpu, Enablei)(GL_BLEND, 0);
 }
 
-static void save_blend_functions(pn_gpu *gpu, pn_gl_state *state) {
+static void save_blend_functions(pni_gpu *gpu, pni_gl_state *state) {
   static const GLenum names[6] = {GL_BLEND_EQUATION_RGB, GL_BLEND_EQUATION_ALPHA, GL_BLEND_SRC_RGB,
                                   GL_BLEND_DST_RGB,      GL_BLEND_SRC_ALPHA,      GL_BLEND_DST_ALPHA};
   for (int i = 0; i < 6; i++) {
@@ -92,7 +92,7 @@ static void save_blend_functions(pn_gpu *gpu, pn_gl_state *state) {
   }
 }
 
-static void save_bindings(pn_gpu *gpu, pn_gl_state *state) {
+static void save_bindings(pni_gpu *gpu, pni_gl_state *state) {
   GL(gpu, GetIntegerv)(GL_CURRENT_PROGRAM, &state->program);
   GL(gpu, GetIntegerv)(GL_VERTEX_ARRAY_BINDING, &state->vertex_array);
   GL(gpu, GetIntegerv)(GL_ARRAY_BUFFER_BINDING, &state->array_buffer);
@@ -102,14 +102,14 @@ static void save_bindings(pn_gpu *gpu, pn_gl_state *state) {
   GL(gpu, GetIntegerv)(GL_PIXEL_PACK_BUFFER_BINDING, &state->pixel_pack);
   GL(gpu, GetIntegerv)(GL_PIXEL_UNPACK_BUFFER_BINDING, &state->pixel_unpack);
   if (gpu->can.indirect) GL(gpu, GetIntegerv)(GL_DRAW_INDIRECT_BUFFER_BINDING, &state->draw_indirect);
-  GL(gpu, GetIntegeri_v)(GL_UNIFORM_BUFFER_BINDING, PN_BLOCK_BINDING, &state->block_buffer);
-  GL(gpu, GetInteger64i_v)(GL_UNIFORM_BUFFER_START, PN_BLOCK_BINDING, &state->block_start);
-  GL(gpu, GetInteger64i_v)(GL_UNIFORM_BUFFER_SIZE, PN_BLOCK_BINDING, &state->block_size);
+  GL(gpu, GetIntegeri_v)(GL_UNIFORM_BUFFER_BINDING, PNI_BLOCK_BINDING, &state->block_buffer);
+  GL(gpu, GetInteger64i_v)(GL_UNIFORM_BUFFER_START, PNI_BLOCK_BINDING, &state->block_start);
+  GL(gpu, GetInteger64i_v)(GL_UNIFORM_BUFFER_SIZE, PNI_BLOCK_BINDING, &state->block_size);
 }
 
-static void save_textures(pn_gpu *gpu, pn_gl_state *state) {
+static void save_textures(pni_gpu *gpu, pni_gl_state *state) {
   GL(gpu, GetIntegerv)(GL_ACTIVE_TEXTURE, &state->active_texture);
-  for (int unit = 0; unit < PN_UNIT_COUNT; unit++) {
+  for (int unit = 0; unit < PNI_UNIT_COUNT; unit++) {
     GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);
     GL(gpu, GetIntegerv)(GL_TEXTURE_BINDING_2D, &state->texture_2d[unit]);
     GL(gpu, GetIntegerv)(GL_TEXTURE_BINDING_2D_ARRAY, &state->texture_array[unit]);
@@ -119,7 +119,7 @@ static void save_textures(pn_gpu *gpu, pn_gl_state *state) {
   GL(gpu, ActiveTexture)((GLenum)state->active_texture);
 }
 
-static void save_raster(pn_gpu *gpu, pn_gl_state *state) {
+static void save_raster(pni_gpu *gpu, pni_gl_state *state) {
   GL(gpu, GetIntegerv)(GL_VIEWPORT, state->viewport);
   GL(gpu, GetIntegerv)(GL_SCISSOR_BOX, state->scissor);
   GL(gpu, GetIntegerv)(GL_CLAMP_READ_COLOR, &state->clamp_read);
@@ -145,7 +145,7 @@ static void save_raster(pn_gpu *gpu, pn_gl_state *state) {
   for (int i = 0; i < switch_count(gpu); i++) state->enabled[i] = GL(gpu, IsEnabled)(switches[i]);
 }
 
-void pn_state_save(pn_gpu *gpu, pn_gl_state *state) {
+void pni_state_save(pni_gpu *gpu, pni_gl_state *state) {
   save_bindings(gpu, state);
   save_textures(gpu, state);
   save_raster(gpu, state);
@@ -155,16 +155,16 @@ void pn_state_save(pn_gpu *gpu, pn_gl_state *state) {
   }
 }
 
-static void restore_bindings(pn_gpu *gpu, const pn_gl_state *state) {
+static void restore_bindings(pni_gpu *gpu, const pni_gl_state *state) {
   GL(gpu, UseProgram)((GLuint)state->program);
   GL(gpu, BindVertexArray)((GLuint)state->vertex_array);
   GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, (GLuint)state->array_buffer);
   GL(gpu, BindFramebuffer)(GL_DRAW_FRAMEBUFFER, (GLuint)state->draw_framebuffer);
   GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, (GLuint)state->read_framebuffer);
   if (state->block_size > 0) GL(gpu, BindBufferRange)
-  (GL_UNIFORM_BUFFER, PN_BLOCK_BINDING, (GLuint)state->block_buffer, (GLintptr)state->block_start,
+  (GL_UNIFORM_BUFFER, PNI_BLOCK_BINDING, (GLuint)state->block_buffer, (GLintptr)state->block_start,
    (GLsizeiptr)state->block_size);
-  else GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PN_BLOCK_BINDING, (GLuint)state->block_buffer);
+  else GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PNI_BLOCK_BINDING, (GLuint)state->block_buffer);
   GL(gpu, BindBuffer)(GL_UNIFORM_BUFFER, (GLuint)state->uniform_buffer); /* after the indexed one, which sets it too */
   GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, (GLuint)state->pixel_pack);
   GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, (GLuint)state->pixel_unpack);
@@ -172,12 +172,12 @@ static void restore_bindings(pn_gpu *gpu, const pn_gl_state *state) {
 }
 
 /* What the call deleted while it was bound stays unbound, as GL has it. */
-static GLuint living(pn_gpu *gpu, GLint texture) {
+static GLuint living(pni_gpu *gpu, GLint texture) {
   return texture && GL(gpu, IsTexture)((GLuint)texture) ? (GLuint)texture : 0;
 }
 
-static void restore_textures(pn_gpu *gpu, const pn_gl_state *state) {
-  for (int unit = 0; unit < PN_UNIT_COUNT; unit++) {
+static void restore_textures(pni_gpu *gpu, const pni_gl_state *state) {
+  for (int unit = 0; unit < PNI_UNIT_COUNT; unit++) {
     GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);
     GL(gpu, BindTexture)(GL_TEXTURE_2D, living(gpu, state->texture_2d[unit]));
     GL(gpu, BindTexture)(GL_TEXTURE_2D_ARRAY, living(gpu, state->texture_array[unit]));
@@ -187,10 +187,10 @@ static void restore_textures(pn_gpu *gpu, const pn_gl_state *state) {
   GL(gpu, ActiveTexture)((GLenum)state->active_texture);
 }
 
-static void restore_raster(pn_gpu *gpu, const pn_gl_state *state) {
-  pn_set_scissor(gpu, state->scissor[0], state->scissor[1], state->scissor[2], state->scissor[3]);
+static void restore_raster(pni_gpu *gpu, const pni_gl_state *state) {
+  pni_set_scissor(gpu, state->scissor[0], state->scissor[1], state->scissor[2], state->scissor[3]);
   GL(gpu, ClampColor)(GL_CLAMP_READ_COLOR, (GLenum)state->clamp_read);
-  pn_set_viewport(gpu, state->viewport[0], state->viewport[1], state->viewport[2], state->viewport[3]);
+  pni_set_viewport(gpu, state->viewport[0], state->viewport[1], state->viewport[2], state->viewport[3]);
   GL(gpu, DepthFunc)((GLenum)state->depth_func);
   GL(gpu, CullFace)((GLenum)state->cull_face);
   GL(gpu, FrontFace)((GLenum)state->front_face);
@@ -202,7 +202,7 @@ static void restore_raster(pn_gpu *gpu, const pn_gl_state *state) {
     GL(gpu, PolygonMode)(GL_FRONT_AND_BACK, (GLenum)state->polygon_mode[0]);
   }
   GL(gpu, DepthMask)(state->depth_mask);
-  pn_set_depth_range(gpu, state->depth_range[0], state->depth_range[1]);
+  pni_set_depth_range(gpu, state->depth_range[0], state->depth_range[1]);
   GL(gpu, ClearDepth)(state->clear_depth);
   if (gpu->can.clip_control) GL(gpu, ClipControl)((GLenum)state->clip_origin, (GLenum)state->clip_depth);
   for (int i = 0; i < draw_buffers(gpu); i++) {
@@ -212,11 +212,11 @@ static void restore_raster(pn_gpu *gpu, const pn_gl_state *state) {
     else GL(gpu, Disablei)(GL_BLEND, (GLuint)i);
   }
   set_blend_functions(gpu, state->blend_equation, state->blend_function);
-  for (int i = 0; i < clip_distances(gpu); i++) pn_set_switch(gpu, GL_CLIP_DISTANCE0 + (GLenum)i, state->clip[i]);
-  for (int i = 0; i < switch_count(gpu); i++) pn_set_switch(gpu, switches[i], state->enabled[i]);
+  for (int i = 0; i < clip_distances(gpu); i++) pni_set_switch(gpu, GL_CLIP_DISTANCE0 + (GLenum)i, state->clip[i]);
+  for (int i = 0; i < switch_count(gpu); i++) pni_set_switch(gpu, switches[i], state->enabled[i]);
 }
 
-void pn_state_restore(pn_gpu *gpu, const pn_gl_state *state) {
+void pni_state_restore(pni_gpu *gpu, const pni_gl_state *state) {
   restore_bindings(gpu, state);
   restore_textures(gpu, state);
   restore_raster(gpu, state);
@@ -226,7 +226,7 @@ void pn_state_restore(pn_gpu *gpu, const pn_gl_state *state) {
   }
 }
 
-static void reset_pixels(pn_gpu *gpu) {
+static void reset_pixels(pni_gpu *gpu) {
   GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
   GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, 0);
   for (int i = 0; i < PIXEL_NAMES; i++) {
@@ -235,14 +235,14 @@ static void reset_pixels(pn_gpu *gpu) {
   }
 }
 
-void pn_state_neutral(pn_gpu *gpu) {
-  for (int i = 0; i < switch_count(gpu); i++) pn_set_switch(gpu, switches[i], false);
+void pni_state_neutral(pni_gpu *gpu) {
+  for (int i = 0; i < switch_count(gpu); i++) pni_set_switch(gpu, switches[i], false);
   for (int i = 0; i < clip_distances(gpu); i++) GL(gpu, Disable)(GL_CLIP_DISTANCE0 + (GLenum)i);
   GL(gpu, Disable)(GL_BLEND);
   GL(gpu, ColorMask)(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   GL(gpu, DepthMask)(GL_FALSE);
   GL(gpu, DepthFunc)(GL_LESS);
-  pn_set_depth_range(gpu, 0, 1);
+  pni_set_depth_range(gpu, 0, 1);
   GL(gpu, ProvokingVertex)(GL_LAST_VERTEX_CONVENTION);
   GL(gpu, ClampColor)(GL_CLAMP_READ_COLOR, GL_FIXED_ONLY);
   GL(gpu, PolygonMode)(GL_FRONT_AND_BACK, GL_FILL);
@@ -252,8 +252,8 @@ void pn_state_neutral(pn_gpu *gpu) {
   reset_pixels(gpu);
 }
 
-void pn_state_reset(pn_gpu *gpu) {
-  pn_state_neutral(gpu);
+void pni_state_reset(pni_gpu *gpu) {
+  pni_state_neutral(gpu);
   GL(gpu, Enable)(GL_DITHER);
   GL(gpu, DepthMask)(GL_TRUE);
   GL(gpu, ClearDepth)(1);
@@ -263,8 +263,8 @@ void pn_state_reset(pn_gpu *gpu) {
   GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, 0);
   GL(gpu, BindFramebuffer)(GL_FRAMEBUFFER, 0);
   if (gpu->can.indirect) GL(gpu, BindBuffer)(GL_DRAW_INDIRECT_BUFFER, 0);
-  GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PN_BLOCK_BINDING, 0);
-  for (int unit = PN_UNIT_COUNT; unit-- > 0;) { /* ends at unit 0, the default active one */
+  GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PNI_BLOCK_BINDING, 0);
+  for (int unit = PNI_UNIT_COUNT; unit-- > 0;) { /* ends at unit 0, the default active one */
     GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);
     GL(gpu, BindTexture)(GL_TEXTURE_2D, 0);
     GL(gpu, BindTexture)(GL_TEXTURE_2D_ARRAY, 0);

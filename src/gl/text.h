@@ -5,13 +5,13 @@
 #include "gl/gpu.h"
 
 typedef struct {
-  pn_gpu *gpu;
-  char *bytes; /* always terminated once something was added; pn_free frees it */
+  pni_gpu *gpu;
+  char *bytes; /* always terminated once something was added; pni_free frees it */
   size_t length, capacity;
   bool failed; /* out of memory: every further addition does nothing */
-} pn_text;
+} pni_text;
 
-void pn_text_add(pn_text *text, const char *bytes, size_t length);
-void pn_text_format(pn_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void pni_text_add(pni_text *text, const char *bytes, size_t length);
+void pni_text_format(pni_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #endif

@@ -13,8 +13,8 @@ static const double snap_steps = 64;
 static const double tile_opening = 120, tile_angle = 60; /* degrees */
 
 typedef struct {
-  const pn_fit_request *request;
-  pn_matrix light_from_scene;
+  const pni_fit_request *request;
+  pni_matrix light_from_scene;
   double z_max;   /* first look: the farthest caster */
   double z_cut;   /* rectangle: boxes are cut off here, close before the light */
   double z_floor; /* rectangle: nearer casters are taken to be here */
@@ -23,7 +23,7 @@ typedef struct {
 } fitting;
 
 static void to_light(const fitting *f, const double corners[8][3], double out[8][3]) {
-  for (int i = 0; i < 8; i++) pn_matrix_point(&f->light_from_scene, corners[i], out[i]);
+  for (int i = 0; i < 8; i++) pni_matrix_point(&f->light_from_scene, corners[i], out[i]);
 }
 
 /* ---- distances --------------------------------------------------------------------------------------------------- */
@@ -51,7 +51,7 @@ typedef struct {
 
 static void span_add(span3 *span, const fitting *f, const double p[3]) {
   double m[3];
-  pn_map_point(p, f->request->frame->sun, m);
+  pni_map_point(p, f->request->frame->sun, m);
   for (int i = 0; i < 2; i++) m[i] -= f->request->shear[i] * m[2];
   if (!f->request->frame->sun) m[2] = fmin(m[2], 1 / f->z_floor);
   for (int i = 0; i < 3; i++) {
@@ -88,7 +88,7 @@ static span3 box_span(const fitting *f, const double p[8][3]) {
 /* Cuts the span down to what can shadow the visible region: false when nothing is left. A caster at w reaches
  * receivers within A (w - w_R). */
 static bool cut_to_visible(const fitting *f, span3 *span) {
-  const pn_region *visible = f->request->visible;
+  const pni_region *visible = f->request->visible;
   if (!visible) return true;
   double reach = span->most[2] - visible->least[2];
   if (!(reach > 0)) return false;
@@ -143,7 +143,7 @@ static double snap_step(double low, double high) {
   return ceil(high / step) - floor(low / step) > snap_steps ? 2 * step : step;
 }
 
-void pn_fit_snap(double *low, double *high) {
+void pni_fit_snap(double *low, double *high) {
   if (!(*high > *low)) return;
   double step = snap_step(*low, *high);
   *low = floor(*low / step) * step;
@@ -158,7 +158,7 @@ static double snap_distance(double z, bool up) {
 }
 
 /* w_near above, w_far strictly below every caster. */
-static void snap_depth(const fitting *f, pn_fit_result *out) {
+static void snap_depth(const fitting *f, pni_fit_result *out) {
   double w_low = f->least[2], w_high = f->most[2];
   if (f->request->frame->sun) {
     double extent = fmax(w_high - w_low, 1e-6 * (fabs(w_high) + fabs(w_low)) + 1e-30),
@@ -193,7 +193,7 @@ static double tile_edge(double low, double high, int i, int count) {
   return tan(atan(low) + (atan(high) - atan(low)) * i / count);
 }
 
-static void make_tiles(const pn_fit_request *request, pn_fit_result *out) {
+static void make_tiles(const pni_fit_request *request, pni_fit_result *out) {
   const double *b = out->bounds;
   bool split = !request->frame->sun && !request->given;
   int columns = split ? tiles_along(b[0], b[2]) : 1, rows = split ? tiles_along(b[1], b[3]) : 1;
@@ -217,7 +217,7 @@ static void make_tiles(const pn_fit_request *request, pn_fit_result *out) {
  * without visible receivers: then four times as far behind the casters as these are wide, or as far as it takes for
  * the map to grow by a quarter of that width. */
 static double least_receiver(const fitting *f) {
-  const pn_fit_request *r = f->request;
+  const pni_fit_request *r = f->request;
   double w = r->visible ? r->visible->least[2] : -INFINITY;
   if (!r->frame->sun) return fmin(fmax(w, 0), f->most[2]);
   double wide = fmax(f->most[0] - f->least[0], f->most[1] - f->least[1]);
@@ -226,8 +226,8 @@ static double least_receiver(const fitting *f) {
 }
 
 /* Around the casters by their longest shadow, and of that what visible receivers can ask for. */
-static bool extend_to_reach(fitting *f, pn_fit_result *out) {
-  const pn_fit_request *r = f->request;
+static bool extend_to_reach(fitting *f, pni_fit_result *out) {
+  const pni_fit_request *r = f->request;
   out->w_reach = least_receiver(f);
   for (int i = 0; i < 2; i++) {
     double grow = r->reach_width > 0 ? r->reach_width : r->frame->extent[i] * (f->most[2] - out->w_reach);
@@ -251,27 +251,27 @@ static void widen_flat(double *low, double *high, double other_extent) {
 }
 
 /* Whether anything was cut off. */
-static bool clamp_opening(const fitting *f, pn_fit_result *out) {
+static bool clamp_opening(const fitting *f, pni_fit_result *out) {
   bool cut = false;
   for (int i = 0; i < 4 && !f->request->frame->sun; i++) {
-    double clamped = fmin(fmax(out->bounds[i], -PN_TANGENT_MAX), PN_TANGENT_MAX);
+    double clamped = fmin(fmax(out->bounds[i], -PNI_TANGENT_MAX), PNI_TANGENT_MAX);
     cut = cut || clamped != out->bounds[i];
     out->bounds[i] = clamped;
   }
   return cut;
 }
 
-void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_request *request, pn_fit_result *out) {
-  fitting f = {.request = request, .light_from_scene = pn_light_from_scene(request->frame)};
+void pni_fit_maps(const pn_casters *casters, uint32_t groups, const pni_fit_request *request, pni_fit_result *out) {
+  fitting f = {.request = request, .light_from_scene = pni_light_from_scene(request->frame)};
   for (int i = 0; i < 3; i++) {
     f.least[i] = INFINITY;
     f.most[i] = -INFINITY;
   }
   memset(out, 0, sizeof *out);
-  pn_casters_each_box(casters, groups, look_at_distance, &f);
+  pni_casters_each_box(casters, groups, look_at_distance, &f);
   f.z_cut = nearest_share * f.z_max;
   f.z_floor = fmax(request->near_distance, f.z_cut);
-  pn_casters_each_box(casters, groups, add_box, &f);
+  pni_casters_each_box(casters, groups, add_box, &f);
   out->empty = !f.any;
   if (out->empty) return;
   if (request->given) fit_given(&f);
@@ -286,7 +286,7 @@ void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_reques
   out->clamped = clamp_opening(&f, out);
   for (int i = 0; i < 2; i++) {
     widen_flat(&out->bounds[i], &out->bounds[i + 2], f.most[1 - i] - f.least[1 - i]);
-    if (!request->given) pn_fit_snap(&out->bounds[i], &out->bounds[i + 2]);
+    if (!request->given) pni_fit_snap(&out->bounds[i], &out->bounds[i + 2]);
   }
   clamp_opening(&f, out); /* what snapping put beyond the limit is empty */
   snap_depth(&f, out);
@@ -295,7 +295,7 @@ void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_reques
 
 /* ---- the part that later layers hold ----------------------------------------------------------------------------- */
 
-pn_part pn_fit_focus(const pn_fit_request *request, const pn_fit_result *fit, int tile, double share) {
+pni_part pni_fit_focus(const pni_fit_request *request, const pni_fit_result *fit, int tile, double share) {
   int texels[2] = {request->width, request->height}, low[2], high[2];
   for (int i = 0; i < 2; i++) {
     double least = fit->bounds[i], most = fit->bounds[i + 2], half = 0.5 * share * (most - least);
@@ -304,5 +304,5 @@ pn_part pn_fit_focus(const pn_fit_request *request, const pn_fit_result *fit, in
     low[i] = (int)fmin(fmax(floor((middle - half - from) * to_texel), 0), texels[i]);
     high[i] = (int)fmin(fmax(ceil((middle + half - from) * to_texel), low[i]), texels[i]);
   }
-  return (pn_part){low[0], low[1], high[0] - low[0], high[1] - low[1]};
+  return (pni_part){low[0], low[1], high[0] - low[0], high[1] - low[1]};
 }

@@ -7,7 +7,7 @@
 #include "gl/target.h"
 #include "space/region.h"
 
-enum { PN_TILES_MAX = 9 };
+enum { PNI_TILES_MAX = 9 };
 
 typedef struct {
   bool empty;       /* nothing casts here */
@@ -16,31 +16,31 @@ typedef struct {
   double w_near, w_far;
   double w_reach; /* with reach: no receiver lies below */
   int tiles;
-  double tile[PN_TILES_MAX][4]; /* with a border of one texel, except for a fit that is given */
-} pn_fit_result;
+  double tile[PNI_TILES_MAX][4]; /* with a border of one texel, except for a fit that is given */
+} pni_fit_result;
 
 typedef struct {
-  const pn_frame *frame;
+  const pni_frame *frame;
   double shear[2]; /* the light's point the map is drawn from, for both kinds of light */
   double near_distance, range;
   int width, height;
-  const float *given;       /* PN_FIT_GIVEN's box, or NULL */
-  const pn_region *visible; /* receivers that casters must be able to shadow, or NULL */
+  const float *given;        /* PN_FIT_GIVEN's box, or NULL */
+  const pni_region *visible; /* receivers that casters must be able to shadow, or NULL */
   /* Cover what the casters can darken, as far as the light's extent says, or reach_width map units, around them; of
    * that what visible receivers can ask for. */
   bool reach;
   double reach_width;
-} pn_fit_request;
+} pni_fit_request;
 
 /* Widens a range to whole steps of a grid that depends on its extent alone, so that what moves a little does not move
  * the texels between. */
-void pn_fit_snap(double *low, double *high);
+void pni_fit_snap(double *low, double *high);
 
-void pn_fit_maps(const pn_casters *casters, uint32_t groups, const pn_fit_request *request, pn_fit_result *out);
+void pni_fit_maps(const pn_casters *casters, uint32_t groups, const pni_fit_request *request, pni_fit_result *out);
 
 /* The texels of a tile that layers past the first are drawn over when they hold only this share of the fit's width and
  * height: around the point straight below a rectangle, or as near to it as the fit reaches; for a sun, around the
  * fit's middle. Whole texels, outwards; empty where the tile has none. */
-pn_part pn_fit_focus(const pn_fit_request *request, const pn_fit_result *fit, int tile, double share);
+pni_part pni_fit_focus(const pni_fit_request *request, const pni_fit_result *fit, int tile, double share);
 
 #endif

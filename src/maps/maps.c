@@ -3,89 +3,89 @@
 #include <math.h>
 #include <string.h>
 
-int pn_want_layers(const pn_maps_want *want) { return want->near_layers + (want->farthest ? 1 : 0); }
+int pni_want_layers(const pni_maps_want *want) { return want->near_layers + (want->farthest ? 1 : 0); }
 
 /* ---- textures ---------------------------------------------------------------------------------------------------- */
 
-pn_result pn_maps_shape(pn_gpu *gpu, pn_maps *maps, const pn_maps_want *want, int count, int width, int height) {
-  int layers = pn_want_layers(want);
-  pn_result result = pn_texture_shape(gpu, &maps->depth, GL_DEPTH_COMPONENT32F, width, height, layers * count, 1);
+pn_result pni_maps_shape(pni_gpu *gpu, pni_maps *maps, const pni_maps_want *want, int count, int width, int height) {
+  int layers = pni_want_layers(want);
+  pn_result result = pni_texture_shape(gpu, &maps->depth, GL_DEPTH_COMPONENT32F, width, height, layers * count, 1);
   for (int i = 0; i < 2 && result == PN_OK; i++) {
     if (want->near_layers > 1)
-      result = pn_texture_shape(gpu, &maps->peel[i], GL_DEPTH_COMPONENT32F, width, height, 0, 1);
-    else pn_texture_free(gpu, &maps->peel[i], false);
+      result = pni_texture_shape(gpu, &maps->peel[i], GL_DEPTH_COMPONENT32F, width, height, 0, 1);
+    else pni_texture_free(gpu, &maps->peel[i], false);
   }
-  if (result == PN_OK) result = pn_range_shape(gpu, &maps->range, &want->range, layers * count, width, height);
+  if (result == PN_OK) result = pni_range_shape(gpu, &maps->range, &want->range, layers * count, width, height);
   if (result != PN_OK) return result;
   maps->want = *want;
   maps->layers = layers;
   return PN_OK;
 }
 
-void pn_maps_free(pn_gpu *gpu, pn_maps *maps, bool abandon) {
-  pn_texture_free(gpu, &maps->depth, abandon);
-  pn_texture_free(gpu, &maps->range, abandon);
-  pn_texture_free(gpu, &maps->peel[0], abandon);
-  pn_texture_free(gpu, &maps->peel[1], abandon);
-  pn_texture_free(gpu, &maps->aside, abandon);
+void pni_maps_free(pni_gpu *gpu, pni_maps *maps, bool abandon) {
+  pni_texture_free(gpu, &maps->depth, abandon);
+  pni_texture_free(gpu, &maps->range, abandon);
+  pni_texture_free(gpu, &maps->peel[0], abandon);
+  pni_texture_free(gpu, &maps->peel[1], abandon);
+  pni_texture_free(gpu, &maps->aside, abandon);
   memset(maps, 0, sizeof *maps);
 }
 
 /* ---- drawing ----------------------------------------------------------------------------------------------------- */
 
 typedef struct {
-  pn_gpu *gpu;
-  pn_maps *maps;
-  const pn_map_draw *draw;
-  pn_matrix clip_from_scene, cull_from_scene; /* the second: of what later layers hold */
+  pni_gpu *gpu;
+  pni_maps *maps;
+  const pni_map_draw *draw;
+  pni_matrix clip_from_scene, cull_from_scene; /* the second: of what later layers hold */
 } drawing;
 
-static pn_attachment layer_of(const drawing *d, int layer) {
-  const pn_texture *depth = &d->maps->depth;
-  return (pn_attachment){depth->id, depth->target, 0, d->draw->map * d->maps->layers + layer};
+static pni_attachment layer_of(const drawing *d, int layer) {
+  const pni_texture *depth = &d->maps->depth;
+  return (pni_attachment){depth->id, depth->target, 0, d->draw->map * d->maps->layers + layer};
 }
 
 /* Layers past the first are drawn with the same matrix as the first, so that the same fragment has the same place and
  * depth in each; a smaller frustum is a part of the image. */
-static pn_result draw_layer(const drawing *d, pn_attachment target, int layer, bool farthest, pn_gl peel) {
-  const pn_maps_want *want = &d->maps->want;
-  const pn_part *later = layer > 0 && want->focus > 0 ? &d->draw->later : NULL;
+static pn_result draw_layer(const drawing *d, pni_attachment target, int layer, bool farthest, pn_gl peel) {
+  const pni_maps_want *want = &d->maps->want;
+  const pni_part *later = layer > 0 && want->focus > 0 ? &d->draw->later : NULL;
   int width = d->maps->depth.width, height = d->maps->depth.height;
   pn_faces faces = farthest ? want->far_faces : want->near_faces;
-  pn_pass pass = {.depth = target,
-                  .width = width,
-                  .height = height,
-                  .faces = faces,
-                  .depth_clamp = true,
-                  .depth_use = farthest ? PN_DEPTH_FARTHEST : PN_DEPTH_NEAREST,
-                  .depth_range = {PN_DEPTH_MARGIN, 1 - PN_DEPTH_MARGIN}};
-  pn_result result = pn_pass_begin(d->gpu, &pass);
+  pni_pass pass = {.depth = target,
+                   .width = width,
+                   .height = height,
+                   .faces = faces,
+                   .depth_clamp = true,
+                   .depth_use = farthest ? PNI_DEPTH_FARTHEST : PNI_DEPTH_NEAREST,
+                   .depth_range = {PNI_DEPTH_MARGIN, 1 - PNI_DEPTH_MARGIN}};
+  pn_result result = pni_pass_begin(d->gpu, &pass);
   if (result != PN_OK) return result;
   if (later && (later->width == 0 || later->height == 0)) return PN_OK;
-  if (later) pn_pass_limit(d->gpu, later);
-  pn_caster_draw draw = {.clip_from_scene = d->clip_from_scene,
-                         .cull_from_scene = later ? d->cull_from_scene : d->clip_from_scene,
-                         .groups = d->draw->groups,
-                         .faces = faces ? faces : PN_FACES_ANY,
-                         .peel = peel,
-                         .layer = layer,
-                         .width = width,
-                         .height = height};
-  return pn_casters_draw_pass(d->draw->casters, &draw);
+  if (later) pni_pass_limit(d->gpu, later);
+  pni_caster_draw draw = {.clip_from_scene = d->clip_from_scene,
+                          .cull_from_scene = later ? d->cull_from_scene : d->clip_from_scene,
+                          .groups = d->draw->groups,
+                          .faces = faces ? faces : PN_FACES_ANY,
+                          .peel = peel,
+                          .layer = layer,
+                          .width = width,
+                          .height = height};
+  return pni_casters_draw_pass(d->draw->casters, &draw);
 }
 
 /* Peeling draws into textures of its own and copies: reading one layer of an array while drawing another is undefined
  * in GL 3.3. */
-static void copy_layer(const drawing *d, const pn_texture *from, int layer) {
-  pn_gpu *gpu = d->gpu;
-  pn_attachment to = layer_of(d, layer);
+static void copy_layer(const drawing *d, const pni_texture *from, int layer) {
+  pni_gpu *gpu = d->gpu;
+  pni_attachment to = layer_of(d, layer);
   GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, gpu->read_framebuffer);
   GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
   GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, from->id, 0);
   GL(gpu, ReadBuffer)(GL_NONE);
   GL(gpu, BindFramebuffer)(GL_DRAW_FRAMEBUFFER, gpu->framebuffer);
   GL(gpu, FramebufferTextureLayer)(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, to.texture, 0, to.layer);
-  pn_set_switch(gpu, GL_SCISSOR_TEST, false);
+  pni_set_switch(gpu, GL_SCISSOR_TEST, false);
   GL(gpu, BlitFramebuffer)
   (0, 0, from->width, from->height, 0, 0, from->width, from->height, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
 }
@@ -93,8 +93,8 @@ static void copy_layer(const drawing *d, const pn_texture *from, int layer) {
 static pn_result draw_peeled(const drawing *d) {
   pn_gl previous = 0;
   for (int layer = 0; layer < d->maps->want.near_layers; layer++) {
-    const pn_texture *target = &d->maps->peel[layer & 1];
-    pn_attachment attachment = {target->id, target->target, 0, 0};
+    const pni_texture *target = &d->maps->peel[layer & 1];
+    pni_attachment attachment = {target->id, target->target, 0, 0};
     pn_result result = draw_layer(d, attachment, layer, false, previous);
     if (result != PN_OK) return result;
     copy_layer(d, target, layer);
@@ -104,22 +104,22 @@ static pn_result draw_peeled(const drawing *d) {
 }
 
 /* The frustum of a part of the map, a texel wider than it: what float arithmetic moves across its edge is drawn. */
-static pn_matrix clip_part(const pn_matrix *clip, const pn_part *part, int width, int height) {
+static pni_matrix clip_part(const pni_matrix *clip, const pni_part *part, int width, int height) {
   const int first[2] = {part->x, part->y}, count[2] = {part->width, part->height}, size[2] = {width, height};
-  pn_matrix narrow = pn_matrix_identity();
+  pni_matrix narrow = pni_matrix_identity();
   for (int i = 0; i < 2; i++) {
     double scale = size[i] / (count[i] + 2.0), middle = (2.0 * first[i] + count[i]) / size[i] - 1;
     narrow.m[5 * i] = scale;
     narrow.m[12 + i] = -scale * middle;
   }
-  return pn_matrix_multiply(&narrow, clip);
+  return pni_matrix_multiply(&narrow, clip);
 }
 
-pn_result pn_maps_draw(pn_gpu *gpu, pn_maps *maps, const pn_map_draw *draw) {
+pn_result pni_maps_draw(pni_gpu *gpu, pni_maps *maps, const pni_map_draw *draw) {
   drawing d = {gpu, maps, draw, {{0}}, {{0}}};
-  pn_matrix clip = pn_clip_from_light(draw->frame->sun, draw->bounds, draw->w_near, draw->w_far, draw->shear);
-  pn_matrix light = pn_light_from_scene(draw->frame);
-  d.clip_from_scene = pn_matrix_multiply(&clip, &light);
+  pni_matrix clip = pni_clip_from_light(draw->frame->sun, draw->bounds, draw->w_near, draw->w_far, draw->shear);
+  pni_matrix light = pni_light_from_scene(draw->frame);
+  d.clip_from_scene = pni_matrix_multiply(&clip, &light);
   d.cull_from_scene = clip_part(&d.clip_from_scene, &draw->later, maps->depth.width, maps->depth.height);
   maps->later[draw->map] = draw->later;
   pn_result result = PN_OK;
@@ -130,26 +130,26 @@ pn_result pn_maps_draw(pn_gpu *gpu, pn_maps *maps, const pn_map_draw *draw) {
   return result;
 }
 
-pn_result pn_maps_prepare(pn_gpu *gpu, const pn_maps_want *want) {
-  pn_result result = pn_casters_prepare(gpu, false);
-  if (result == PN_OK && want->near_layers > 1) result = pn_casters_prepare(gpu, true);
-  return result == PN_OK ? pn_range_prepare(gpu, &want->range) : result;
+pn_result pni_maps_prepare(pni_gpu *gpu, const pni_maps_want *want) {
+  pn_result result = pni_casters_prepare(gpu, false);
+  if (result == PN_OK && want->near_layers > 1) result = pni_casters_prepare(gpu, true);
+  return result == PN_OK ? pni_range_prepare(gpu, &want->range) : result;
 }
 
 /* ---- the uniform block ------------------------------------------------------------------------------------------- */
 
-static void axis_row(const pn_matrix *light_from_scene, int row, float out[4]) {
+static void axis_row(const pni_matrix *light_from_scene, int row, float out[4]) {
   for (int c = 0; c < 4; c++) out[c] = (float)light_from_scene->m[4 * c + row];
 }
 
 /* Vertices are snapped to the raster's sub-pixels, half a step at most on each axis; twice that for the arithmetic
  * around it. */
-static float raster_error(const pn_gpu *gpu) { return (float)ldexp(1.0, -gpu->can.subpixel_bits); }
+static float raster_error(const pni_gpu *gpu) { return (float)ldexp(1.0, -gpu->can.subpixel_bits); }
 
-void pn_block_frame(pn_light_block *block, const pn_frame *frame, const pn_gpu *gpu, int count, int layers, int width,
-                    int height) {
+void pni_block_frame(pni_light_block *block, const pni_frame *frame, const pni_gpu *gpu, int count, int layers,
+                     int width, int height) {
   memset(block, 0, sizeof *block);
-  pn_matrix light_from_scene = pn_light_from_scene(frame);
+  pni_matrix light_from_scene = pni_light_from_scene(frame);
   axis_row(&light_from_scene, 0, block->scene_u);
   axis_row(&light_from_scene, 1, block->scene_v);
   axis_row(&light_from_scene, 2, block->scene_z);
@@ -165,10 +165,10 @@ void pn_block_frame(pn_light_block *block, const pn_frame *frame, const pn_gpu *
   block->range[3] = raster_error(gpu);
 }
 
-void pn_block_map(pn_light_block *block, const pn_gpu *gpu, const pn_map_draw *draw, int width, int height) {
+void pni_block_map(pni_light_block *block, const pni_gpu *gpu, const pni_map_draw *draw, int width, int height) {
   float base_error = raster_error(gpu);
   double scale[2];
-  pn_depth_scale(draw->w_near, draw->w_far, scale);
+  pni_depth_scale(draw->w_near, draw->w_far, scale);
   float *bounds = block->map_bounds[draw->map], *depth = block->map_depth[draw->map];
   bounds[0] = (float)draw->bounds[0];
   bounds[1] = (float)draw->bounds[1];
@@ -190,4 +190,4 @@ void pn_block_map(pn_light_block *block, const pn_gpu *gpu, const pn_map_draw *d
   block->range[2] = fmaxf(block->range[2], error);
 }
 
-_Static_assert(sizeof(pn_light_block) == (6 + 3 + 2 * PN_MAPS_MAX) * 16, "std140 layout of pn_LightData");
+_Static_assert(sizeof(pni_light_block) == (6 + 3 + 2 * PNI_MAPS_MAX) * 16, "std140 layout of pn_LightData");

@@ -12,23 +12,23 @@ typedef struct {
   double w_least, w_most;
   int width, height;
   int layers; /* surfaces that are told apart behind one another, from the light; at least 1 */
-} pn_receiver_map_want;
+} pni_receiver_map_want;
 
 typedef struct {
   /* RGBA32F array, a layer for each surface, nearest to the light first. A texel: w of the receiver at its centre, and
    * the receiver's tangent plane (maps/receiver_map.glsl); w is PN_NOTHING where no pixel shows one. */
-  pn_texture layers;
-  pn_texture range; /* pyramid over layers: largest and smallest w of 2^i x 2^i texels, padded to powers of two */
-  pn_texture aside, depth; /* while a layer is drawn */
-  pn_receiver_map_want want;
-} pn_receiver_map;
+  pni_texture layers;
+  pni_texture range; /* pyramid over layers: largest and smallest w of 2^i x 2^i texels, padded to powers of two */
+  pni_texture aside, depth; /* while a layer is drawn */
+  pni_receiver_map_want want;
+} pni_receiver_map;
 
 /* Draws the map; the light's block must be bound. */
-pn_result pn_receiver_map_draw(pn_receiver *receiver, const pn_frame *frame, const pn_receiver_map_want *want,
-                               pn_receiver_map *map);
+pn_result pni_receiver_map_draw(pn_receiver *receiver, const pni_frame *frame, const pni_receiver_map_want *want,
+                                pni_receiver_map *map);
 /* Layers and range to their units and the bounds, for a program in use that includes maps/receiver_map.glsl. */
-void pn_receiver_map_bind(pn_gpu *gpu, const pn_receiver_map *map, const pn_program *program);
-pn_result pn_receiver_map_prepare(pn_gpu *gpu, int layers);
-void pn_receiver_map_free(pn_gpu *gpu, pn_receiver_map *map, bool abandon);
+void pni_receiver_map_bind(pni_gpu *gpu, const pni_receiver_map *map, const pni_program *program);
+pn_result pni_receiver_map_prepare(pni_gpu *gpu, int layers);
+void pni_receiver_map_free(pni_gpu *gpu, pni_receiver_map *map, bool abandon);
 
 #endif

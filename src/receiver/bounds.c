@@ -4,41 +4,41 @@
 enum { BLOCK = 16 }; /* PN_BLOCK of bounds.frag.glsl */
 
 /* Least and most, of one step. */
-static pn_result shape(pn_gpu *gpu, pn_texture images[2], int width, int height) {
-  pn_result result = pn_texture_shape(gpu, &images[0], GL_RGBA32F, width, height, 0, 1);
-  return result == PN_OK ? pn_texture_shape(gpu, &images[1], GL_RGBA32F, width, height, 0, 1) : result;
+static pn_result shape(pni_gpu *gpu, pni_texture images[2], int width, int height) {
+  pn_result result = pni_texture_shape(gpu, &images[0], GL_RGBA32F, width, height, 0, 1);
+  return result == PN_OK ? pni_texture_shape(gpu, &images[1], GL_RGBA32F, width, height, 0, 1) : result;
 }
 
-static pn_result step(pn_receiver *receiver, const pn_frame *frame, const pn_texture *from, const pn_texture *to) {
-  pn_gpu *gpu = &receiver->object.context->gpu;
+static pn_result step(pn_receiver *receiver, const pni_frame *frame, const pni_texture *from, const pni_texture *to) {
+  pni_gpu *gpu = &receiver->object.context->gpu;
   const char *defines = from                          ? "PN_FIRST 0\n"
                         : receiver->desc.mask_texture ? "PN_FIRST 1\nPN_MASK 1\n"
                                                       : "PN_FIRST 1\nPN_MASK 0\n";
-  pn_program_key key = {"shaders/screen.vert.glsl", "receiver/bounds.frag.glsl", NULL, defines};
-  const pn_program *program;
-  pn_result result = pn_program_get(gpu, &key, &program);
+  pni_program_key key = {"shaders/screen.vert.glsl", "receiver/bounds.frag.glsl", NULL, defines};
+  const pni_program *program;
+  pn_result result = pni_program_get(gpu, &key, &program);
   if (result != PN_OK) return result;
-  pn_pass pass = {.color = {{to[0].id, GL_TEXTURE_2D, 0, 0}, {to[1].id, GL_TEXTURE_2D, 0, 0}},
-                  .width = to->width,
-                  .height = to->height};
-  result = pn_screen_begin(gpu, &pass, program);
+  pni_pass pass = {.color = {{to[0].id, GL_TEXTURE_2D, 0, 0}, {to[1].id, GL_TEXTURE_2D, 0, 0}},
+                   .width = to->width,
+                   .height = to->height};
+  result = pni_screen_begin(gpu, &pass, program);
   if (result != PN_OK) return result;
   if (from) {
-    pn_bind_texture(gpu, PN_UNIT_WORK, GL_TEXTURE_2D, from[0].id, false);
-    pn_bind_texture(gpu, PN_UNIT_RANGE, GL_TEXTURE_2D, from[1].id, false);
+    pni_bind_texture(gpu, PNI_UNIT_WORK, GL_TEXTURE_2D, from[0].id, false);
+    pni_bind_texture(gpu, PNI_UNIT_RANGE, GL_TEXTURE_2D, from[1].id, false);
   } else {
-    pn_receiver_bind(receiver, program, frame, 1);
-    GL(gpu, Uniform1i)(pn_uniform(program, "pn_sun"), frame->sun);
+    pni_receiver_bind(receiver, program, frame, 1);
+    GL(gpu, Uniform1i)(pni_uniform(program, "pn_sun"), frame->sun);
   }
-  pn_draw_screen(gpu);
+  pni_draw_screen(gpu);
   return PN_OK;
 }
 
-static void read_back(pn_gpu *gpu, const pn_texture images[2], pn_region *region) {
+static void read_back(pni_gpu *gpu, const pni_texture images[2], pni_region *region) {
   float values[2][4];
   GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
   for (int i = 0; i < 2; i++) {
-    pn_read_from(gpu, &images[i], 0, 0);
+    pni_read_from(gpu, &images[i], 0, 0);
     GL(gpu, ReadPixels)(0, 0, 1, 1, GL_RGBA, GL_FLOAT, values[i]);
   }
   GL(gpu, FramebufferTexture2D)(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
@@ -51,9 +51,9 @@ static void read_back(pn_gpu *gpu, const pn_texture images[2], pn_region *region
 
 static int blocks(int size) { return (size + BLOCK - 1) / BLOCK; }
 
-pn_result pn_receiver_bounds(pn_receiver *receiver, const pn_frame *frame, pn_region *region) {
-  pn_gpu *gpu = &receiver->object.context->gpu;
-  pn_texture *from = NULL, *to = receiver->bounds, *other = receiver->bounds + 2;
+pn_result pni_receiver_bounds(pn_receiver *receiver, const pni_frame *frame, pni_region *region) {
+  pni_gpu *gpu = &receiver->object.context->gpu;
+  pni_texture *from = NULL, *to = receiver->bounds, *other = receiver->bounds + 2;
   int width = receiver->desc.width, height = receiver->desc.height;
   do {
     width = blocks(width);
@@ -69,7 +69,7 @@ pn_result pn_receiver_bounds(pn_receiver *receiver, const pn_frame *frame, pn_re
   return PN_OK;
 }
 
-void pn_receiver_frustum(const pn_receiver *receiver, const pn_frame *frame, pn_region *region) {
+void pni_receiver_frustum(const pn_receiver *receiver, const pni_frame *frame, pni_region *region) {
   const pn_receiver_desc *d = &receiver->desc;
-  pn_region_add_frustum(region, frame, &receiver->scene_from_clip, d->depth_zero_to_one ? 0 : -1);
+  pni_region_add_frustum(region, frame, &receiver->scene_from_clip, d->depth_zero_to_one ? 0 : -1);
 }

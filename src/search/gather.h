@@ -7,19 +7,19 @@
 #include "receiver/receiver.h"
 
 typedef struct {
-  pn_gpu *gpu;
+  pni_gpu *gpu;
   const char *shader;  /* the technique's, with pn_technique() */
   const char *defines; /* and what it depends on */
   bool searches;       /* it tells what its search did, when debugging */
-  const pn_frame *frame;
-  pn_maps *maps;
+  const pni_frame *frame;
+  pni_maps *maps;
   pn_receiver *receiver;
-  pn_pair *pair;
-  pn_attachment target;
-} pn_gathering;
+  pni_pair *pair;
+  pni_attachment target;
+} pni_gathering;
 
-pn_result pn_gather(const pn_gathering *gathering);
+pn_result pni_gather(const pni_gathering *gathering);
 /* Compiles for receivers as most hosts set them: with and without normals, full resolution. */
-pn_result pn_gather_prepare(pn_gpu *gpu, const char *shader, const char *defines);
+pn_result pni_gather_prepare(pni_gpu *gpu, const char *shader, const char *defines);
 
 #endif

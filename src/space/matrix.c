@@ -3,34 +3,34 @@
 #include <math.h>
 #include <string.h>
 
-pn_matrix pn_matrix_identity(void) { return (pn_matrix){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}; }
+pni_matrix pni_matrix_identity(void) { return (pni_matrix){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}; }
 
-pn_matrix pn_matrix_from_floats(const float m[16]) {
-  pn_matrix a;
+pni_matrix pni_matrix_from_floats(const float m[16]) {
+  pni_matrix a;
   for (int i = 0; i < 16; i++) a.m[i] = m[i];
   return a;
 }
 
-void pn_matrix_to_floats(const pn_matrix *a, float out[16]) {
+void pni_matrix_to_floats(const pni_matrix *a, float out[16]) {
   for (int i = 0; i < 16; i++) out[i] = (float)a->m[i];
 }
 
-pn_matrix pn_matrix_multiply(const pn_matrix *a, const pn_matrix *b) {
-  pn_matrix out;
-  for (int column = 0; column < 4; column++) pn_matrix_apply(a, b->m + 4 * column, out.m + 4 * column);
+pni_matrix pni_matrix_multiply(const pni_matrix *a, const pni_matrix *b) {
+  pni_matrix out;
+  for (int column = 0; column < 4; column++) pni_matrix_apply(a, b->m + 4 * column, out.m + 4 * column);
   return out;
 }
 
-void pn_matrix_apply(const pn_matrix *a, const double in[4], double out[4]) {
+void pni_matrix_apply(const pni_matrix *a, const double in[4], double out[4]) {
   double result[4];
   for (int row = 0; row < 4; row++)
     result[row] = a->m[row] * in[0] + a->m[4 + row] * in[1] + a->m[8 + row] * in[2] + a->m[12 + row] * in[3];
   memcpy(out, result, sizeof result);
 }
 
-void pn_matrix_point(const pn_matrix *a, const double in[3], double out[3]) {
+void pni_matrix_point(const pni_matrix *a, const double in[3], double out[3]) {
   double point[4] = {in[0], in[1], in[2], 1}, result[4];
-  pn_matrix_apply(a, point, result);
+  pni_matrix_apply(a, point, result);
   memcpy(out, result, 3 * sizeof *out);
 }
 
@@ -54,7 +54,7 @@ static bool equilibrate(double rows[4][8], double scales[8]) {
 }
 
 /* Gauss-Jordan with row pivoting on [a | 1]. */
-bool pn_matrix_invert(const pn_matrix *a, pn_matrix *out) {
+bool pni_matrix_invert(const pni_matrix *a, pni_matrix *out) {
   double rows[4][8] = {{0}}, scales[8];
   for (int r = 0; r < 4; r++) {
     for (int c = 0; c < 4; c++) rows[r][c] = a->m[4 * c + r];
@@ -86,7 +86,7 @@ bool pn_matrix_invert(const pn_matrix *a, pn_matrix *out) {
   return true;
 }
 
-bool pn_floats_finite(const float *values, int count) {
+bool pni_floats_finite(const float *values, int count) {
   for (int i = 0; i < count; i++)
     if (!isfinite(values[i])) return false;
   return true;

@@ -6,16 +6,16 @@
 
 typedef struct {
   double m[16];
-} pn_matrix;
+} pni_matrix;
 
-pn_matrix pn_matrix_identity(void);
-pn_matrix pn_matrix_from_floats(const float m[16]);
-void pn_matrix_to_floats(const pn_matrix *a, float out[16]);
-pn_matrix pn_matrix_multiply(const pn_matrix *a, const pn_matrix *b); /* a * b: b is applied first */
-bool pn_matrix_invert(const pn_matrix *a, pn_matrix *out);            /* false: singular or not finite */
-void pn_matrix_apply(const pn_matrix *a, const double in[4], double out[4]);
+pni_matrix pni_matrix_identity(void);
+pni_matrix pni_matrix_from_floats(const float m[16]);
+void pni_matrix_to_floats(const pni_matrix *a, float out[16]);
+pni_matrix pni_matrix_multiply(const pni_matrix *a, const pni_matrix *b); /* a * b: b is applied first */
+bool pni_matrix_invert(const pni_matrix *a, pni_matrix *out);             /* false: singular or not finite */
+void pni_matrix_apply(const pni_matrix *a, const double in[4], double out[4]);
 /* A point through an affine matrix. */
-void pn_matrix_point(const pn_matrix *a, const double in[3], double out[3]);
-bool pn_floats_finite(const float *values, int count);
+void pni_matrix_point(const pni_matrix *a, const double in[3], double out[3]);
+bool pni_floats_finite(const float *values, int count);
 
 #endif

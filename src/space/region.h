@@ -7,13 +7,13 @@
 /* Bounds in (s, t, w); least > most where it is empty. */
 typedef struct {
   double least[3], most[3];
-} pn_region;
+} pni_region;
 
-pn_region pn_region_empty(void);
-void pn_region_add(pn_region *region, const double m[3]);
+pni_region pni_region_empty(void);
+void pni_region_add(pni_region *region, const double m[3]);
 /* Adds what a camera's frustum covers. scene_from_clip: inverse of projection * view; depth_near: 0 or -1, the near end of its clip
  * space. */
-void pn_region_add_frustum(pn_region *region, const pn_frame *frame, const pn_matrix *scene_from_clip,
-                           double depth_near);
+void pni_region_add_frustum(pni_region *region, const pni_frame *frame, const pni_matrix *scene_from_clip,
+                            double depth_near);
 
 #endif

@@ -25,7 +25,7 @@ static void widen(const float in[3], double out[3]) {
 /* Closer than this to parallel, an axis says nothing about the rotation. */
 static const double parallel = 1e-6;
 
-bool pn_frame_axes(const float direction[3], const float axis_u[3], pn_frame *frame) {
+bool pni_frame_axes(const float direction[3], const float axis_u[3], pni_frame *frame) {
   double z[3], u[3];
   widen(direction, z);
   widen(axis_u, u);
@@ -55,11 +55,11 @@ static void narrow(const double in[3], float out[3]) {
 pn_result pn_light_frame(const float direction[3], const float up[3], float direction_out[3], float u_out[3],
                          float v_out[3]) {
   static const float others[2][3] = {{0, 0, -1}, {1, 0, 0}};
-  if (!direction || !pn_floats_finite(direction, 3)) return PN_ERROR_ARGUMENT;
+  if (!direction || !pni_floats_finite(direction, 3)) return PN_ERROR_ARGUMENT;
   double z[3], u[3], v[3];
   widen(direction, z);
   if (!normalize(z)) return PN_ERROR_ARGUMENT;
-  bool found = up && pn_floats_finite(up, 3) && frame_from_up(z, up, u);
+  bool found = up && pni_floats_finite(up, 3) && frame_from_up(z, up, u);
   for (int i = 0; i < 2 && !found; i++) found = frame_from_up(z, others[i], u);
   cross(u, z, v);
   narrow(z, direction_out);
@@ -68,9 +68,9 @@ pn_result pn_light_frame(const float direction[3], const float up[3], float dire
   return PN_OK;
 }
 
-pn_matrix pn_light_from_scene(const pn_frame *frame) {
+pni_matrix pni_light_from_scene(const pni_frame *frame) {
   const double *axes[3] = {frame->u, frame->v, frame->z};
-  pn_matrix out = pn_matrix_identity();
+  pni_matrix out = pni_matrix_identity();
   for (int row = 0; row < 3; row++) {
     for (int column = 0; column < 3; column++) out.m[4 * column + row] = axes[row][column];
     out.m[12 + row] = -dot(axes[row], frame->origin);
@@ -78,7 +78,7 @@ pn_matrix pn_light_from_scene(const pn_frame *frame) {
   return out;
 }
 
-void pn_map_point(const double p[3], bool sun, double m[3]) {
+void pni_map_point(const double p[3], bool sun, double m[3]) {
   double w = sun ? -p[2] : 1 / p[2];
   double scale = sun ? 1 : w;
   m[0] = p[0] * scale;
@@ -86,7 +86,7 @@ void pn_map_point(const double p[3], bool sun, double m[3]) {
   m[2] = w;
 }
 
-void pn_light_point(const double m[3], bool sun, double p[3]) {
+void pni_light_point(const double m[3], bool sun, double p[3]) {
   double z = sun ? -m[2] : 1 / m[2];
   double scale = sun ? 1 : z;
   p[0] = m[0] * scale;
@@ -94,36 +94,36 @@ void pn_light_point(const double m[3], bool sun, double p[3]) {
   p[2] = z;
 }
 
-void pn_back_project(const double q[3], const double r[3], double light_point[2]) {
+void pni_back_project(const double q[3], const double r[3], double light_point[2]) {
   light_point[0] = (q[0] - r[0]) / (q[2] - r[2]);
   light_point[1] = (q[1] - r[1]) / (q[2] - r[2]);
 }
 
-double pn_plane_offset(const double n[3], const double p[3], bool sun) { return sun ? n[2] : dot(n, p); }
+double pni_plane_offset(const double n[3], const double p[3], bool sun) { return sun ? n[2] : dot(n, p); }
 
-double pn_plane_front(const double n[3], double k, const double q[3], const double r[3]) {
+double pni_plane_front(const double n[3], double k, const double q[3], const double r[3]) {
   return n[0] * (q[0] - r[0]) + n[1] * (q[1] - r[1]) - k * (q[2] - r[2]);
 }
 
-double pn_horizon(const double n[3], double k, const double light_point[2]) {
+double pni_horizon(const double n[3], double k, const double light_point[2]) {
   return n[0] * light_point[0] + n[1] * light_point[1] - k;
 }
 
-double pn_search_window(double extent, double w_max, double w_r) { return extent * fmax(w_max - w_r, 0); }
+double pni_search_window(double extent, double w_max, double w_r) { return extent * fmax(w_max - w_r, 0); }
 
-double pn_penumbra_extent(double extent, double w, double w_min) { return extent * fmax(w - w_min, 0); }
+double pni_penumbra_extent(double extent, double w, double w_min) { return extent * fmax(w - w_min, 0); }
 
-void pn_depth_scale(double w_near, double w_far, double w_of_depth[2]) {
-  double scale = (w_far - w_near) / (1 - 2 * PN_DEPTH_MARGIN);
-  w_of_depth[0] = w_near - PN_DEPTH_MARGIN * scale;
+void pni_depth_scale(double w_near, double w_far, double w_of_depth[2]) {
+  double scale = (w_far - w_near) / (1 - 2 * PNI_DEPTH_MARGIN);
+  w_of_depth[0] = w_near - PNI_DEPTH_MARGIN * scale;
   w_of_depth[1] = scale;
 }
 
 /* Rows, with a = 2 / (s1 - s0):  x_clip / w_clip = a (s' - s0) - 1,  z_clip / w_clip = 2 (w - w_near) / (w_far -
  * w_near) - 1, where w_clip = z for a rectangle (s' = (x - shear) / z, w = 1 / z) and 1 for a sun (s' = x + shear z,
  * w = -z). */
-pn_matrix pn_clip_from_light(bool sun, const double bounds[4], double w_near, double w_far, const double shear[2]) {
-  pn_matrix out = {{0}};
+pni_matrix pni_clip_from_light(bool sun, const double bounds[4], double w_near, double w_far, const double shear[2]) {
+  pni_matrix out = {{0}};
   double depth = 2 / (w_far - w_near);
   for (int axis = 0; axis < 2; axis++) {
     double low = bounds[axis], a = 2 / (bounds[axis + 2] - low);

@@ -16,43 +16,43 @@ typedef struct {
   double origin[3], u[3], v[3], z[3]; /* scene space; u, v, z unit and perpendicular */
   double extent[2];                   /* A_u, A_v: scene units, or tangents */
   bool sun;
-} pn_frame;
+} pni_frame;
 
 /* Stored depths keep this far from 0 and 1, so that those two mean 'nothing here', even where depth clamping moved a
  * caster to the end of the range. */
-#define PN_DEPTH_MARGIN (1.0 / 65536.0)
+#define PNI_DEPTH_MARGIN (1.0 / 65536.0)
 
 /* The most a map may open: tangent of 85 degrees to each side. */
-#define PN_TANGENT_MAX 11.430052302761343
+#define PNI_TANGENT_MAX 11.430052302761343
 
 /* frame->u, v, z from a direction and an axis; false when either is zero, not finite, or they are parallel. */
-bool pn_frame_axes(const float direction[3], const float axis_u[3], pn_frame *frame);
-pn_matrix pn_light_from_scene(const pn_frame *frame);
+bool pni_frame_axes(const float direction[3], const float axis_u[3], pni_frame *frame);
+pni_matrix pni_light_from_scene(const pni_frame *frame);
 
 /* p in the light's frame to (s, t, w). */
-void pn_map_point(const double p[3], bool sun, double m[3]);
+void pni_map_point(const double p[3], bool sun, double m[3]);
 /* ... and back. */
-void pn_light_point(const double m[3], bool sun, double p[3]);
+void pni_light_point(const double m[3], bool sun, double p[3]);
 /* The light's point behind Q as R sees it; meaningful for w_Q > w_R. */
-void pn_back_project(const double q[3], const double r[3], double light_point[2]);
+void pni_back_project(const double q[3], const double r[3], double light_point[2]);
 /* n . P for a rectangle, n_z for a sun: with it, horizons and planes are the same formula for both. */
-double pn_plane_offset(const double n[3], const double p[3], bool sun);
+double pni_plane_offset(const double n[3], const double p[3], bool sun);
 /* How far Q lies in front of R's tangent plane, times w_Q for a rectangle: no division, so no sign flips. k =
- * pn_plane_offset. */
-double pn_plane_front(const double n[3], double k, const double q[3], const double r[3]);
+ * pni_plane_offset. */
+double pni_plane_front(const double n[3], double k, const double q[3], const double r[3]);
 /* Above 0 where the light's point lies above R's horizon. */
-double pn_horizon(const double n[3], double k, const double light_point[2]);
+double pni_horizon(const double n[3], double k, const double light_point[2]);
 /* Half width, along s or t, of the texels that can block a receiver at w_r when nothing lies nearer than w_max. */
-double pn_search_window(double extent, double w_max, double w_r);
+double pni_search_window(double extent, double w_max, double w_r);
 /* How far, along s or t, a micropatch at w can darken receivers no farther than w_min. */
-double pn_penumbra_extent(double extent, double w, double w_min);
+double pni_penumbra_extent(double extent, double w, double w_min);
 
 /* Depth is affine in w: w = w_of_depth[0] + w_of_depth[1] * stored depth. */
-void pn_depth_scale(double w_near, double w_far, double w_of_depth[2]);
+void pni_depth_scale(double w_near, double w_far, double w_of_depth[2]);
 
 /* Clip space of a map that covers [s0, s1] x [t0, t1] between w_near and w_far, for coordinates in the light's frame;
  * sheared, it is the map as seen from the light's point (shear[0], shear[1]): s' = s - shear w, for both kinds of
  * light. */
-pn_matrix pn_clip_from_light(bool sun, const double bounds[4], double w_near, double w_far, const double shear[2]);
+pni_matrix pni_clip_from_light(bool sun, const double bounds[4], double w_near, double w_far, const double shear[2]);
 
 #endif

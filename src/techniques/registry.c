@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const pn_technique_class *const classes[] = {
-    &pn_technique_hard,    &pn_technique_pcf,       &pn_technique_pcss,
-    &pn_technique_average, &pn_technique_ssm,       &pn_technique_backprojection,
-    &pn_technique_bitmask, &pn_technique_smoothies,
+static const pni_technique_class *const classes[] = {
+    &pni_technique_hard,    &pni_technique_pcf,       &pni_technique_pcss,
+    &pni_technique_average, &pni_technique_ssm,       &pni_technique_backprojection,
+    &pni_technique_bitmask, &pni_technique_smoothies,
 };
 enum { COUNT = sizeof classes / sizeof *classes };
 
@@ -23,7 +23,7 @@ const pn_technique *pn_technique_find(const char *name) {
   return NULL;
 }
 
-const pn_technique_class *pn_technique_class_of(const pn_technique *table) {
+const pni_technique_class *pni_technique_class_of(const pn_technique *table) {
   for (int i = 0; i < COUNT; i++)
     if (&classes[i]->table == table) return classes[i];
   return NULL;
@@ -154,8 +154,8 @@ static pn_result read_all_pairs(const pn_technique *t, const char *text, double 
  * top of it. */
 static pn_result read_pairs(const pn_technique *t, const char *text, double *values, const explanation *e) {
   if (!text) return PN_OK;
-  const pn_technique_class *technique = pn_technique_class_of(t);
-  double first[PN_PARAMETERS_MAX];
+  const pni_technique_class *technique = pni_technique_class_of(t);
+  double first[PNI_PARAMETERS_MAX];
   memcpy(first, values, sizeof first);
   pn_result result = read_all_pairs(t, text, first, e);
   if (result != PN_OK || !technique->preset) return read_all_pairs(t, text, values, e);
@@ -179,7 +179,7 @@ pn_result pn_technique_parse(const char *spec, const pn_technique **technique, d
     list_techniques(list);
     return explain(&e, "technique '%s' is unknown; there are %s", copy, list);
   }
-  double read[PN_PARAMETERS_MAX];
+  double read[PNI_PARAMETERS_MAX];
   for (int i = 0; i < t->parameter_count; i++) read[i] = t->parameters[i].initial;
   pn_result result = read_pairs(t, rest, read, &e);
   if (result != PN_OK) return result;
@@ -188,17 +188,18 @@ pn_result pn_technique_parse(const char *spec, const pn_technique **technique, d
   return PN_OK;
 }
 
-bool pn_parameter_set(const pn_technique *t, const char *name, double value, double *values, pn_message *message) {
+bool pni_parameter_set(const pn_technique *t, const char *name, double value, double *values, pn_message *message) {
   int index = find_parameter(t, name);
   *message = index < 0 ? PN_MESSAGE_PARAMETER_UNKNOWN : PN_MESSAGE_PARAMETER_VALUE;
   if (index < 0 || !value_in_range(&t->parameters[index], value)) return false;
   values[index] = value;
-  const pn_technique_class *technique = pn_technique_class_of(t);
+  const pni_technique_class *technique = pni_technique_class_of(t);
   if (index == 0 && technique->preset) technique->preset((int)value, values);
   return true;
 }
 
-void pn_technique_defines(const pn_technique_class *technique, const double *values, char out[PN_TECHNIQUE_DEFINES]) {
+void pni_technique_defines(const pni_technique_class *technique, const double *values,
+                           char out[PNI_TECHNIQUE_DEFINES]) {
   out[0] = 0;
   if (technique->defines) technique->defines(values, out);
 }

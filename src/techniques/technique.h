@@ -8,63 +8,63 @@
 
 /* Everything one call of pn_visibility has: the same for every technique. */
 typedef struct {
-  pn_gpu *gpu;
+  pni_gpu *gpu;
   const pn_light_desc *desc;
-  const pn_frame *frame;
+  const pni_frame *frame;
   const double *values; /* parameters, in the order of the table */
-  pn_maps *maps;        /* drawn by pn_maps_update as the technique wanted them */
-  pn_buffer *block;     /* the light's, bound */
+  pni_maps *maps;       /* drawn by pn_maps_update as the technique wanted them */
+  pni_buffer *block;    /* the light's, bound */
   pn_casters *casters;  /* of the last pn_maps_update; NULL when they are gone */
   uint32_t groups;
-  const pn_region *visible; /* what that update was fitted to, or NULL */
+  const pni_region *visible; /* what that update was fitted to, or NULL */
   pn_receiver *receiver;
-  pn_pair *pair;
-  pn_attachment target; /* where visibility goes */
-} pn_visibility_request;
+  pni_pair *pair;
+  pni_attachment target; /* where visibility goes */
+} pni_visibility_request;
 
 /* What a technique has that adds an image of its own to the light's maps. */
 typedef struct {
-  pn_gpu *gpu;
-  const pn_frame *frame;
+  pni_gpu *gpu;
+  const pni_frame *frame;
   const double *values;
-  pn_maps *maps; /* drawn; the block that describes them is bound */
+  pni_maps *maps; /* drawn; the block that describes them is bound */
   pn_casters *casters;
   uint32_t groups;
-} pn_build_request;
+} pni_build_request;
 
-enum { PN_TECHNIQUE_DEFINES = 256 };
+enum { PNI_TECHNIQUE_DEFINES = 256 };
 
 typedef struct {
   pn_technique table;
   /* The maps it needs with these values. */
-  void (*want)(const double *values, pn_maps_want *out);
+  void (*want)(const double *values, pni_maps_want *out);
   /* Parameter 0 is preset: sets the others to what that choice stands for. NULL: the technique has no presets. */
   void (*preset)(int choice, double *values);
   /* A gathering technique is a shader with pn_technique(); it needs nothing else. */
   const char *shader;
   /* #defines that the shader depends on, as lines; what may change without compiling is read from the block. NULL:
    * none. */
-  void (*defines)(const double *values, char out[PN_TECHNIQUE_DEFINES]);
-  /* Fills maps->range, in each pn_maps_update, for a technique that wants PN_RANGE_OWN; stage: the name of its time. */
-  pn_result (*build)(const pn_build_request *request);
+  void (*defines)(const double *values, char out[PNI_TECHNIQUE_DEFINES]);
+  /* Fills maps->range, in each pn_maps_update, for a technique that wants PNI_RANGE_OWN; stage: the name of its time. */
+  pn_result (*build)(const pni_build_request *request);
   const char *stage;
   bool searches; /* the shader includes search/search.glsl and tells what it did */
   /* Others draw by themselves, and compile by themselves. */
-  pn_result (*draw)(const pn_visibility_request *request);
-  pn_result (*prepare)(pn_gpu *gpu, const double *values);
-} pn_technique_class;
+  pn_result (*draw)(const pni_visibility_request *request);
+  pn_result (*prepare)(pni_gpu *gpu, const double *values);
+} pni_technique_class;
 
 /* The class behind a table that the library handed out. */
-const pn_technique_class *pn_technique_class_of(const pn_technique *table);
+const pni_technique_class *pni_technique_class_of(const pn_technique *table);
 
 /* The shader's defines for these values: "" where it has none. */
-void pn_technique_defines(const pn_technique_class *technique, const double *values, char out[PN_TECHNIQUE_DEFINES]);
+void pni_technique_defines(const pni_technique_class *technique, const double *values, char out[PNI_TECHNIQUE_DEFINES]);
 
 /* Sets one of values by the parameter's name; false, with the message that fits, when there is none or the value is
  * not one of its own. */
-bool pn_parameter_set(const pn_technique *table, const char *name, double value, double *values, pn_message *message);
+bool pni_parameter_set(const pn_technique *table, const char *name, double value, double *values, pn_message *message);
 
-extern const pn_technique_class pn_technique_hard, pn_technique_pcf, pn_technique_pcss, pn_technique_average,
-    pn_technique_ssm, pn_technique_backprojection, pn_technique_bitmask, pn_technique_smoothies;
+extern const pni_technique_class pni_technique_hard, pni_technique_pcf, pni_technique_pcss, pni_technique_average,
+    pni_technique_ssm, pni_technique_backprojection, pni_technique_bitmask, pni_technique_smoothies;
 
 #endif

@@ -6,36 +6,38 @@
 
 #include "context.h"
 
-enum { WIDTH = 64, INPUT_UNIT = PN_UNIT_COUNT };
+enum { WIDTH = 64, INPUT_UNIT = PNI_UNIT_COUNT };
 
 static const char vertex_text[] =
     "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }\n";
-static const char before[] =
-    "uniform highp sampler2DArray pn_maps, pn_range; uniform sampler2D call_inputs; uniform int call_vectors; uvec4 results[8];\n"
-    "layout(location = 0) out uvec4 out_0; layout(location = 1) out uvec4 out_1; layout(location = 2) out uvec4 out_2;\n"
-    "layout(location = 3) out uvec4 out_3; layout(location = 4) out uvec4 out_4; layout(location = 5) out uvec4 out_5;\n"
-    "layout(location = 6) out uvec4 out_6; layout(location = 7) out uvec4 out_7;\n"
-    "vec4 taken(int i) { return texelFetch(call_inputs, ivec2(int(gl_FragCoord.x) * call_vectors + i, int(gl_FragCoord.y)), 0); }\n";
-static const char after[] =
-    "void main() {\n"
-    "  for (int i = 0; i < 8; i++) results[i] = uvec4(0u);\n"
-    "  call();\n"
-    "  out_0 = results[0]; out_1 = results[1]; out_2 = results[2]; out_3 = results[3];\n"
-    "  out_4 = results[4]; out_5 = results[5]; out_6 = results[6]; out_7 = results[7];\n"
-    "}\n";
+static const char before[] = "uniform highp sampler2DArray pn_maps, pn_range; uniform sampler2D call_inputs; uniform "
+                             "int call_vectors; uvec4 results[8];\n"
+                             "layout(location = 0) out uvec4 out_0; layout(location = 1) out uvec4 out_1; "
+                             "layout(location = 2) out uvec4 out_2;\n"
+                             "layout(location = 3) out uvec4 out_3; layout(location = 4) out uvec4 out_4; "
+                             "layout(location = 5) out uvec4 out_5;\n"
+                             "layout(location = 6) out uvec4 out_6; layout(location = 7) out uvec4 out_7;\n"
+                             "vec4 taken(int i) { return texelFetch(call_inputs, ivec2(int(gl_FragCoord.x) * "
+                             "call_vectors + i, int(gl_FragCoord.y)), 0); }\n";
+static const char after[] = "void main() {\n"
+                            "  for (int i = 0; i < 8; i++) results[i] = uvec4(0u);\n"
+                            "  call();\n"
+                            "  out_0 = results[0]; out_1 = results[1]; out_2 = results[2]; out_3 = results[3];\n"
+                            "  out_4 = results[4]; out_5 = results[5]; out_6 = results[6]; out_7 = results[7];\n"
+                            "}\n";
 
 static GLuint make_program(stage *s, const glsl_function *f) {
   char *library;
-  assert_ok(pn_shader_text(&s->context->gpu, f->paths, f->defines, &library));
+  assert_ok(pni_shader_text(&s->context->gpu, f->paths, f->defines, &library));
   size_t length = strlen(library) + sizeof before + strlen(f->text) + sizeof after;
   char *whole = malloc(length);
   snprintf(whole, length, "%s%s%s%s", library, before, f->text, after);
-  pn_free(&s->context->gpu, library);
+  pni_free(&s->context->gpu, library);
   GLuint program = gl_program(vertex_text, whole);
   free(whole);
   glUseProgram(program);
-  glUniform1i(glGetUniformLocation(program, "pn_maps"), PN_UNIT_MAPS);
-  glUniform1i(glGetUniformLocation(program, "pn_range"), PN_UNIT_RANGE);
+  glUniform1i(glGetUniformLocation(program, "pn_maps"), PNI_UNIT_MAPS);
+  glUniform1i(glGetUniformLocation(program, "pn_range"), PNI_UNIT_RANGE);
   glUniform1i(glGetUniformLocation(program, "call_inputs"), INPUT_UNIT);
   return program;
 }
@@ -80,7 +82,8 @@ uint32_t *glsl_call(stage *s, const glsl_function *function, const float *inputs
   glBindVertexArray(array);
   glGenFramebuffers(1, &framebuffer);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  for (int k = 0; k < CALL_RESULTS; k++) glFramebufferTexture2D(GL_FRAMEBUFFER, points[k], GL_TEXTURE_2D, targets[k], 0);
+  for (int k = 0; k < CALL_RESULTS; k++)
+    glFramebufferTexture2D(GL_FRAMEBUFFER, points[k], GL_TEXTURE_2D, targets[k], 0);
   glDrawBuffers(CALL_RESULTS, points);
   assert_int_equal(glCheckFramebufferStatus(GL_FRAMEBUFFER), GL_FRAMEBUFFER_COMPLETE);
   glViewport(0, 0, WIDTH, height);

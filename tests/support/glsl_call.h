@@ -8,7 +8,7 @@ enum { CALL_RESULTS = 8 };
 
 /* text defines void call(): it reads taken(0) .. taken(vectors - 1), four floats each, and writes results[0] .. results[7], four uints each (floats
  * through floatBitsToUint). The library's files come before it. For each of count inputs 32 uints, freed by the caller.
- * Samplers named pn_maps and pn_range are the library's units, as they are bound. */
+ * Samplers named pni_maps and pn_range are the library's units, as they are bound. */
 typedef struct {
   const char *const *paths; /* below src/, ends with NULL */
   const char *defines;      /* lines "NAME VALUE\n" */
@@ -18,7 +18,10 @@ typedef struct {
 uint32_t *glsl_call(stage *s, const glsl_function *function, const float *inputs, int vectors, int count);
 
 static inline float as_float(uint32_t bits) {
-  union { uint32_t u; float f; } both = {bits};
+  union {
+    uint32_t u;
+    float f;
+  } both = {bits};
   return both.f;
 }
 

@@ -16,7 +16,7 @@ static int index_of(const pn_technique *t, const char *name) {
   return -1;
 }
 
-static const pn_technique *parse(const char *spec, double values[PN_PARAMETERS_MAX]) {
+static const pn_technique *parse(const char *spec, double values[PNI_PARAMETERS_MAX]) {
   const pn_technique *t;
   char why[256];
   if (pn_technique_parse(spec, &t, values, why, sizeof why) != PN_OK) fail_msg("%s: %s", spec, why);
@@ -26,12 +26,9 @@ static const pn_technique *parse(const char *spec, double values[PN_PARAMETERS_M
 /* A value of the parameter that is not the one given, as a spec writes it. */
 static double other_value(const pn_parameter *p, double value, char out[64]) {
   double other = value == p->least ? p->least + 1 : p->least;
-  if (p->type == PN_CHOICE)
-    snprintf(out, 64, "%s=%s", p->name, p->choices[(int)other]);
-  else if (p->type == PN_BOOL)
-    snprintf(out, 64, "%s=%s", p->name, other != 0 ? "on" : "off");
-  else
-    snprintf(out, 64, "%s=%g", p->name, other);
+  if (p->type == PN_CHOICE) snprintf(out, 64, "%s=%s", p->name, p->choices[(int)other]);
+  else if (p->type == PN_BOOL) snprintf(out, 64, "%s=%s", p->name, other != 0 ? "on" : "off");
+  else snprintf(out, 64, "%s=%g", p->name, other);
   return other;
 }
 
@@ -41,7 +38,7 @@ static void test_order(void **state) {
   for (int n = 0; n < 2; n++)
     for (int c = 0; c < 3; c++) {
       char spec[160], named[64];
-      double preset[PN_PARAMETERS_MAX], values[PN_PARAMETERS_MAX];
+      double preset[PNI_PARAMETERS_MAX], values[PNI_PARAMETERS_MAX];
       snprintf(spec, sizeof spec, "%s:preset=%s", names[n], choices[c]);
       const pn_technique *t = parse(spec, preset);
       assert_true(preset[index_of(t, "preset")] == c);
@@ -50,12 +47,13 @@ static void test_order(void **state) {
         if (!strcmp(t->parameters[i].name, "preset")) continue;
         double other = other_value(&t->parameters[i], preset[i], named);
         for (int after = 0; after < 2; after++) {
-          snprintf(spec, sizeof spec, "%s:%s%s%s,preset=%s%s%s", names[n], after ? "preset=" : "", after ? choices[c] : "", after ? "" : named,
-                   choices[c], after ? "," : "", after ? named : "");
+          snprintf(spec, sizeof spec, "%s:%s%s%s,preset=%s%s%s", names[n], after ? "preset=" : "",
+                   after ? choices[c] : "", after ? "" : named, choices[c], after ? "," : "", after ? named : "");
           if (after) snprintf(spec, sizeof spec, "%s:preset=%s,%s", names[n], choices[c], named);
           parse(spec, values);
           for (int k = 0; k < t->parameter_count; k++)
-            if (values[k] != (k == i ? other : preset[k])) fail_msg("%s: %s is %g", spec, t->parameters[k].name, values[k]);
+            if (values[k] != (k == i ? other : preset[k]))
+              fail_msg("%s: %s is %g", spec, t->parameters[k].name, values[k]);
         }
       }
     }
@@ -65,7 +63,7 @@ static void test_order(void **state) {
 static void test_default(void **state) {
   (void)state;
   for (int n = 0; n < 2; n++) {
-    double plain[PN_PARAMETERS_MAX], all[3][PN_PARAMETERS_MAX];
+    double plain[PNI_PARAMETERS_MAX], all[3][PNI_PARAMETERS_MAX];
     const pn_technique *t = parse(names[n], plain);
     for (int i = 0; i < t->parameter_count; i++) assert_true(plain[i] == t->parameters[i].initial);
     for (int c = 0; c < 3; c++) {
@@ -93,7 +91,7 @@ static void test_light_parameter(void **state) {
     for (int from = 0; from < 3; from++)
       for (int to = 0; to < 3; to++) {
         char spec[64];
-        double want[PN_PARAMETERS_MAX];
+        double want[PNI_PARAMETERS_MAX];
         snprintf(spec, sizeof spec, "%s:preset=%s,merge=7,layers=3", names[n], choices[from]);
         assert_ok(pn_light_technique(s.light, spec, NULL, 0));
         assert_ok(pn_light_parameter(s.light, "preset", to));
@@ -102,8 +100,11 @@ static void test_light_parameter(void **state) {
         for (int i = 0; i < t->parameter_count; i++) assert_true(s.light->values[i] == want[i]);
         assert_ok(pn_light_parameter(s.light, "merge", 3));
         want[index_of(t, "merge")] = 3;
-        static const struct { const char *name; double value; } wrong[] = {{"preset", 3}, {"preset", -1}, {"preset", 0.5}, {"merge", -1}, {"merge", NAN},
-                                                                           {"merge", 51}, {"cap", 1.5}, {"cap", 4097}, {"layers", 0}, {"layers", 17}};
+        static const struct {
+          const char *name;
+          double value;
+        } wrong[] = {{"preset", 3}, {"preset", -1}, {"preset", 0.5}, {"merge", -1}, {"merge", NAN},
+                     {"merge", 51}, {"cap", 1.5},   {"cap", 4097},   {"layers", 0}, {"layers", 17}};
         for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
           assert_int_equal(pn_light_parameter(s.light, wrong[i].name, wrong[i].value), PN_ERROR_ARGUMENT);
         for (int i = 0; i < t->parameter_count; i++) assert_true(s.light->values[i] == want[i]);
@@ -112,6 +113,7 @@ static void test_light_parameter(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_order), cmocka_unit_test(test_default), cmocka_unit_test(test_light_parameter)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_order), cmocka_unit_test(test_default),
+                                     cmocka_unit_test(test_light_parameter)};
   return GL_RUN("presets", tests);
 }

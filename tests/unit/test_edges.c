@@ -6,17 +6,17 @@
 #include "gl_context.h"
 #include "soup.h"
 
-static pn_gpu none; /* the C library's memory, no log */
+static pni_gpu none; /* the C library's memory, no log */
 
-static pn_edge_list edges_of(const float *positions, size_t vertices, const uint32_t *indices, size_t count) {
-  pn_edge_list list;
-  assert_int_equal(pn_edges_find(&none, positions, vertices, indices, count, &list), PN_OK);
+static pni_edge_list edges_of(const float *positions, size_t vertices, const uint32_t *indices, size_t count) {
+  pni_edge_list list;
+  assert_int_equal(pni_edges_find(&none, positions, vertices, indices, count, &list), PN_OK);
   assert_int_equal(list.vertices, vertices);
   /* Every edge is in the rings of its two ends, and nowhere else. */
   size_t entries = 0;
   for (size_t v = 0; v < vertices; v++)
     for (uint32_t i = 0; i < list.rings[v].count; i++, entries++) {
-      pn_ring_entry entry = list.entries[list.rings[v].first + i];
+      pni_ring_entry entry = list.entries[list.rings[v].first + i];
       const uint32_t *ends = list.edges[entry.edge].ends;
       assert_true((ends[0] == v && ends[1] == entry.other) || (ends[1] == v && ends[0] == entry.other));
     }
@@ -24,10 +24,10 @@ static pn_edge_list edges_of(const float *positions, size_t vertices, const uint
   return list;
 }
 
-static pn_edge_list edges_of_soup(const soup *s) {
+static pni_edge_list edges_of_soup(const soup *s) {
   uint32_t *indices = malloc(3 * (size_t)s->count * sizeof *indices);
   for (int i = 0; i < 3 * s->count; i++) indices[i] = (uint32_t)i;
-  pn_edge_list list = edges_of(s->list[0].p[0], 3 * (size_t)s->count, indices, 3 * (size_t)s->count);
+  pni_edge_list list = edges_of(s->list[0].p[0], 3 * (size_t)s->count, indices, 3 * (size_t)s->count);
   free(indices);
   return list;
 }
@@ -37,23 +37,23 @@ static void test_box(void **state) {
   (void)state;
   soup s = {0};
   soup_box(&s, v3(0, 0, 0), v3(1, 2, 3));
-  pn_edge_list list = edges_of_soup(&s);
+  pni_edge_list list = edges_of_soup(&s);
   assert_int_equal(list.count, 18);
   assert_int_equal(list.open + list.crowded + list.opposed + list.dropped, 0);
   for (size_t i = 0; i < list.count; i++) assert_true(list.edges[i].opposite[0] != list.edges[i].opposite[1]);
-  pn_edges_free(&none, &list);
+  pni_edges_free(&none, &list);
   triangle turned = s.list[5]; /* one wound the other way: its three edges are told, and none is lost */
   memcpy(s.list[5].p[0], turned.p[1], 12);
   memcpy(s.list[5].p[1], turned.p[0], 12);
   list = edges_of_soup(&s);
   assert_int_equal(list.count, 18);
   assert_int_equal(list.opposed, 3);
-  pn_edges_free(&none, &list);
+  pni_edges_free(&none, &list);
   s.count--; /* a hole */
   list = edges_of_soup(&s);
   assert_int_equal(list.count, 18);
   assert_int_equal(list.open, 3);
-  pn_edges_free(&none, &list);
+  pni_edges_free(&none, &list);
   soup_free(&s);
 }
 
@@ -61,38 +61,38 @@ static void test_few(void **state) {
   (void)state;
   soup s = {0};
   soup_triangle(&s, v3(0, 0, 0), v3(1, 0, 0), v3(0, 1, 0));
-  pn_edge_list list = edges_of_soup(&s);
+  pni_edge_list list = edges_of_soup(&s);
   assert_int_equal(list.count, 3);
   assert_int_equal(list.open, 3);
-  pn_edges_free(&none, &list);
+  pni_edges_free(&none, &list);
   soup_triangle(&s, v3(0, 0, 0), v3(0, 1, 0), v3(1, 0, 0)); /* the same once more, from behind */
   list = edges_of_soup(&s);
   assert_int_equal(list.count, 3);
   assert_int_equal(list.open, 3);
-  pn_edges_free(&none, &list);
+  pni_edges_free(&none, &list);
   soup_triangle(&s, v3(0, 0, 0), v3(1, 0, 0), v3(0, 0, 1)); /* three half planes around one edge */
   soup_triangle(&s, v3(0, 0, 0), v3(1, 0, 0), v3(0, -1, -1));
   list = edges_of_soup(&s);
   assert_int_equal(list.crowded, 1);
   assert_int_equal(list.count, 3 + 6); /* the shared edge once for each face */
-  pn_edges_free(&none, &list);
+  pni_edges_free(&none, &list);
   soup_free(&s);
 }
 
 static void test_broken(void **state) {
   (void)state;
-  const float positions[7][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0f, 0, 0}, {NAN, 0, 0}, {0, INFINITY, 0}, {2, 0, 0}};
+  const float positions[7][3] = {{0, 0, 0},   {1, 0, 0},        {0, 1, 0}, {-0.0f, 0, 0},
+                                 {NAN, 0, 0}, {0, INFINITY, 0}, {2, 0, 0}};
   const uint32_t indices[] = {0, 1, 2, /* sound */
                               0, 1, 3, /* 3 is where 0 is */
-                              0, 1, 4, 0, 5, 1, 0, 1, 77, 0, 0xffffffffu, 2,
-                              0, 1, 6 /* no area, but three places */};
-  pn_edge_list list = edges_of(positions[0], 7, indices, sizeof indices / 4);
+                              0, 1, 4, 0, 5, 1, 0, 1, 77, 0, 0xffffffffu, 2, 0, 1, 6 /* no area, but three places */};
+  pni_edge_list list = edges_of(positions[0], 7, indices, sizeof indices / 4);
   assert_int_equal(list.dropped, 5);
   assert_int_equal(list.count, 3 + 2);
-  pn_edges_free(&none, &list);
+  pni_edges_free(&none, &list);
   list = edges_of(positions[0], 7, indices, 0);
   assert_int_equal(list.count, 0);
-  pn_edges_free(&none, &list);
+  pni_edges_free(&none, &list);
 }
 
 /* Random triangles on few places: each pair of places with a triangle on it, counted one by one. */
@@ -117,7 +117,8 @@ static void test_brute(void **state) {
       for (int i = 0; i < 3; i++) /* equal coordinates are one place, whatever their number */
         whole = whole && memcmp(positions[3 * t + i], positions[3 * t + (i + 1) % 3], 12) != 0;
       dropped += !whole;
-      for (int i = 0; whole && i < 6; i++) faces[p[i % 3] % 7][p[(i + (i < 3 ? 1 : 2)) % 3] % 7][p[(i + (i < 3 ? 2 : 1)) % 3] % 7] = 1;
+      for (int i = 0; whole && i < 6; i++)
+        faces[p[i % 3] % 7][p[(i + (i < 3 ? 1 : 2)) % 3] % 7][p[(i + (i < 3 ? 2 : 1)) % 3] % 7] = 1;
     }
     for (int a = 0; a < 7; a++)
       for (int b = a + 1; b < 7; b++) {
@@ -127,17 +128,17 @@ static void test_brute(void **state) {
         crowded += here > 2;
         count += here == 2 ? 1 : here;
       }
-    pn_edge_list list = edges_of(positions[0], 3 * TRIANGLES, indices, 3 * TRIANGLES);
+    pni_edge_list list = edges_of(positions[0], 3 * TRIANGLES, indices, 3 * TRIANGLES);
     assert_int_equal(list.dropped, dropped);
     assert_int_equal(list.count, count);
     assert_int_equal(list.open, open);
     assert_int_equal(list.crowded, crowded);
-    pn_edges_free(&none, &list);
+    pni_edges_free(&none, &list);
   }
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_box), cmocka_unit_test(test_few), cmocka_unit_test(test_broken),
-                                     cmocka_unit_test(test_brute)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_box), cmocka_unit_test(test_few),
+                                     cmocka_unit_test(test_broken), cmocka_unit_test(test_brute)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

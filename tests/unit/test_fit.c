@@ -11,9 +11,9 @@ enum { BOXES = PN_GROUP_COUNT };
 /* Fitting looks at boxes only, so casters need no GL here. */
 static void no_draw(void *user, const pn_caster_pass *pass) { (void)user, (void)pass; }
 
-static pn_box box_at(vec centre, vec half) {
-  return (pn_box){{(float)(centre.x - half.x), (float)(centre.y - half.y), (float)(centre.z - half.z)},
-                  {(float)(centre.x + half.x), (float)(centre.y + half.y), (float)(centre.z + half.z)}};
+static pni_box box_at(vec centre, vec half) {
+  return (pni_box){{(float)(centre.x - half.x), (float)(centre.y - half.y), (float)(centre.z - half.z)},
+                   {(float)(centre.x + half.x), (float)(centre.y + half.y), (float)(centre.z + half.z)}};
 }
 
 static void put_box(pn_casters *c, int i, vec centre, vec half) {
@@ -21,33 +21,33 @@ static void put_box(pn_casters *c, int i, vec centre, vec half) {
   c->callbacks[i].bounds = box_at(centre, half);
 }
 
-static vec box_corner(const pn_box *b, int i) {
+static vec box_corner(const pni_box *b, int i) {
   return v3(i & 1 ? b->max[0] : b->min[0], i & 2 ? b->max[1] : b->min[1], i & 4 ? b->max[2] : b->min[2]);
 }
 
 /* A light at the origin that shines along z, u along x, v = u x z along -y. */
-static pn_frame frame_along_z(bool sun, double extent) {
+static pni_frame frame_along_z(bool sun, double extent) {
   static const float z[3] = {0, 0, 1}, u[3] = {1, 0, 0};
-  pn_frame f = {.extent = {extent, extent}, .sun = sun};
-  assert_true(pn_frame_axes(z, u, &f));
+  pni_frame f = {.extent = {extent, extent}, .sun = sun};
+  assert_true(pni_frame_axes(z, u, &f));
   return f;
 }
 
-static pn_fit_request request_of(const pn_frame *f, int size) {
-  return (pn_fit_request){.frame = f, .width = size, .height = size};
+static pni_fit_request request_of(const pni_frame *f, int size) {
+  return (pni_fit_request){.frame = f, .width = size, .height = size};
 }
 
-static pn_fit_result fit(const pn_casters *c, const pn_fit_request *request) {
-  pn_fit_result out;
-  pn_fit_maps(c, PN_GROUPS_ALL, request, &out);
+static pni_fit_result fit(const pn_casters *c, const pni_fit_request *request) {
+  pni_fit_result out;
+  pni_fit_maps(c, PN_GROUPS_ALL, request, &out);
   return out;
 }
 
-static vec map_of(const pn_frame *f, vec p) {
-  pn_matrix light = pn_light_from_scene(f);
+static vec map_of(const pni_frame *f, vec p) {
+  pni_matrix light = pni_light_from_scene(f);
   double in[3] = {p.x, p.y, p.z}, q[3], m[3];
-  pn_matrix_point(&light, in, q);
-  pn_map_point(q, f->sun, m);
+  pni_matrix_point(&light, in, q);
+  pni_map_point(q, f->sun, m);
   return v3(m[0], m[1], m[2]);
 }
 
@@ -64,9 +64,11 @@ static void random_boxes(pn_casters *c, uint64_t *seed, vec middle, double sprea
 
 /* ---- what is covered, and how tightly ---- */
 
-typedef struct { vec least, most; } extent3;
+typedef struct {
+  vec least, most;
+} extent3;
 
-static extent3 exact_extent(const pn_casters *c, const pn_frame *f, const double shear[2]) {
+static extent3 exact_extent(const pn_casters *c, const pni_frame *f, const double shear[2]) {
   extent3 e = {{1e30, 1e30, 1e30}, {-1e30, -1e30, -1e30}};
   for (int b = 0; b < BOXES; b++)
     for (int i = 0; i < 8 && c->callbacks[b].draw; i++) {
@@ -82,7 +84,7 @@ static extent3 exact_extent(const pn_casters *c, const pn_frame *f, const double
 /* Steps are a power of two of at most 2/64 of the extent, and each end moves by at most one of them: 4/64. A border texel on each side then
  * makes it N / (N - 2). Distances may move by an eighth of their power of two and a little: w_near by 1/4 at most (7/16 below 8/16 is the
  * next step of the smaller power: 1/8; rounding up never does more than 1/8), so 1/7 of w; twice that is allowed. */
-static void assert_tight(const pn_fit_result *r, const extent3 *e, int size) {
+static void assert_tight(const pni_fit_result *r, const extent3 *e, int size) {
   double least[2] = {e->least.x, e->least.y}, most[2] = {e->most.x, e->most.y};
   for (int k = 0; k < 2; k++) {
     double extent = most[k] - least[k], slack = 4.0 / 64 * extent + 1e-12;
@@ -99,20 +101,18 @@ static void check_cover(bool sun, bool sheared) {
   uint64_t seed = sun ? 2 : 1;
   for (int round = 0; round < 2000; round++) {
     static pn_casters c;
-    pn_frame f = frame_along_z(sun, 0.5);
-    pn_fit_request request = request_of(&f, 64);
+    pni_frame f = frame_along_z(sun, 0.5);
+    pni_fit_request request = request_of(&f, 64);
     for (int k = 0; k < 2; k++) request.shear[k] = sheared ? random_in(&seed, -0.5, 0.5) : 0;
     random_boxes(&c, &seed, v3(0, 0, 5), 2, 2.5);
-    pn_fit_result r = fit(&c, &request);
+    pni_fit_result r = fit(&c, &request);
     extent3 e = exact_extent(&c, &f, request.shear);
     assert_false(r.empty || r.clamped);
     assert_int_equal(r.tiles, 1);
     assert_tight(&r, &e, 64);
     assert_true(r.w_far < e.least.z && e.most.z < r.w_near);
-    if (sun)
-      assert_true(r.w_near - r.w_far <= (e.most.z - e.least.z) * (1 + 8.0 / 64) + 1e-4);
-    else
-      assert_true(r.w_near <= e.most.z * (1 + 2.0 / 7) && r.w_far >= e.least.z * (1 - 2.0 / 8));
+    if (sun) assert_true(r.w_near - r.w_far <= (e.most.z - e.least.z) * (1 + 8.0 / 64) + 1e-4);
+    else assert_true(r.w_near <= e.most.z * (1 + 2.0 / 7) && r.w_far >= e.least.z * (1 - 2.0 / 8));
   }
 }
 
@@ -124,14 +124,15 @@ static void test_cover(void **state) {
 /* Boxes of a turned mesh count by their turned corners, not by a box around them. */
 static void test_turned_instance(void **state) {
   (void)state;
-  pn_box box = {{-1, -1, -0.01f}, {1, 1, 0.01f}};
-  pn_mesh_data mesh = {.id = 1, .boxes = &box, .box_count = 1};
+  pni_box box = {{-1, -1, -0.01f}, {1, 1, 0.01f}};
+  pni_mesh_data mesh = {.id = 1, .boxes = &box, .box_count = 1};
   double a = 0.7;
-  pn_instance_data instance = {.id = 2, .scene_from_object = {{cos(a), sin(a), 0, 0, -sin(a), cos(a), 0, 0, 0, 0, 1, 0, 0.3, 0, 4, 1}}};
+  pni_instance_data instance = {
+      .id = 2, .scene_from_object = {{cos(a), sin(a), 0, 0, -sin(a), cos(a), 0, 0, 0, 0, 1, 0, 0.3, 0, 4, 1}}};
   pn_casters c = {.meshes = &mesh, .mesh_count = 1, .instances = &instance, .instance_count = 1};
-  pn_frame f = frame_along_z(false, 0.5);
-  pn_fit_request request = request_of(&f, 64);
-  pn_fit_result r = fit(&c, &request);
+  pni_frame f = frame_along_z(false, 0.5);
+  pni_fit_request request = request_of(&f, 64);
+  pni_fit_result r = fit(&c, &request);
   extent3 e = {{1e30, 1e30, 1e30}, {-1e30, -1e30, -1e30}};
   for (int i = 0; i < 8; i++) {
     vec k = box_corner(&box, i), p = v3(cos(a) * k.x - sin(a) * k.y + 0.3, sin(a) * k.x + cos(a) * k.y, k.z + 4);
@@ -144,13 +145,13 @@ static void test_turned_instance(void **state) {
 
 /* ---- snapping ---- */
 
-static pn_fit_result fit_two(double x, double y, double z, bool sun) {
+static pni_fit_result fit_two(double x, double y, double z, bool sun) {
   static pn_casters c;
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, 5), v3(1.7, 1.3, 0.5)); /* stays, and holds the bounds at three sides */
   put_box(&c, 1, v3(x, y, z), v3(0.2, 0.2, 0.2));
-  pn_frame f = frame_along_z(sun, 0.5);
-  pn_fit_request request = request_of(&f, 100);
+  pni_frame f = frame_along_z(sun, 0.5);
+  pni_fit_request request = request_of(&f, 100);
   return fit(&c, &request);
 }
 
@@ -158,9 +159,10 @@ static void test_moving_inside(void **state) {
   (void)state;
   uint64_t seed = 3;
   for (int sun = 0; sun < 2; sun++) {
-    pn_fit_result still = fit_two(0, 0, 5, sun);
+    pni_fit_result still = fit_two(0, 0, 5, sun);
     for (int i = 0; i < 2000; i++) {
-      pn_fit_result moved = fit_two(random_in(&seed, -1.2, 1.2), random_in(&seed, -0.8, 0.8), random_in(&seed, 4.75, 5.25), sun);
+      pni_fit_result moved =
+          fit_two(random_in(&seed, -1.2, 1.2), random_in(&seed, -0.8, 0.8), random_in(&seed, 4.75, 5.25), sun);
       assert_memory_equal(&still, &moved, sizeof still);
     }
   }
@@ -174,16 +176,17 @@ static void test_snapping_is_stable(void **state) {
   for (int i = 0; i < 5000; i++) {
     static pn_casters c;
     memset(&c, 0, sizeof c);
-    pn_frame f = frame_along_z(true, 0.5);
-    pn_fit_request request = request_of(&f, 100);
+    pni_frame f = frame_along_z(true, 0.5);
+    pni_fit_request request = request_of(&f, 100);
     vec centre = random_point(&seed, 3), half = v3(exp2(random_in(&seed, -4, 2)), exp2(random_in(&seed, -4, 2)), 1);
     put_box(&c, 0, centre, half);
-    pn_fit_result first = fit(&c, &request);
+    pni_fit_result first = fit(&c, &request);
     /* A second box from a corner of the snapped bounds, a float's width inside, to somewhere in the first box. v is -y. */
-    double s = first.bounds[0] + 1e-6 * (1 + fabs(first.bounds[0])), t = first.bounds[3] - 1e-6 * (1 + fabs(first.bounds[3]));
+    double s = first.bounds[0] + 1e-6 * (1 + fabs(first.bounds[0])),
+           t = first.bounds[3] - 1e-6 * (1 + fabs(first.bounds[3]));
     vec corner = v3(s, -t, centre.z), size = mul(0.5, sub(centre, corner));
     put_box(&c, 1, add(corner, size), v3(fabs(size.x), fabs(size.y), 0.5));
-    pn_fit_result second = fit(&c, &request);
+    pni_fit_result second = fit(&c, &request);
     assert_memory_equal(first.bounds, second.bounds, sizeof first.bounds);
     assert_true(first.w_near == second.w_near && first.w_far == second.w_far);
   }
@@ -194,20 +197,20 @@ static void test_snapping_is_stable(void **state) {
 static void test_crossing_and_behind(void **state) {
   (void)state;
   static pn_casters c;
-  pn_frame f = frame_along_z(false, 0.5);
-  pn_fit_request request = request_of(&f, 64);
+  pni_frame f = frame_along_z(false, 0.5);
+  pni_fit_request request = request_of(&f, 64);
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, -3), v3(1, 1, 1)); /* wholly behind */
   assert_true(fit(&c, &request).empty);
   put_box(&c, 1, v3(0.5, 0, 4), v3(0.5, 0.5, 0.5));
-  pn_fit_result alone = fit(&c, &request);
+  pni_fit_result alone = fit(&c, &request);
   assert_false(alone.empty);
   c.callbacks[0].draw = NULL;
-  pn_fit_result without = fit(&c, &request);
+  pni_fit_result without = fit(&c, &request);
   assert_memory_equal(&alone, &without, sizeof alone);
   /* One that crosses the plane beside the light: what lies before the light is inside. */
   put_box(&c, 0, v3(2, 0, 1), v3(0.25, 0.25, 3));
-  pn_fit_result crossing = fit(&c, &request);
+  pni_fit_result crossing = fit(&c, &request);
   assert_false(crossing.empty);
   for (double z = 0.5; z <= 4; z += 0.25)
     for (int i = 0; i < 4; i++) {
@@ -221,24 +224,24 @@ static void test_crossing_and_behind(void **state) {
 static void test_near_and_range(void **state) {
   (void)state;
   static pn_casters c;
-  pn_frame f = frame_along_z(false, 0.5);
-  pn_fit_request request = request_of(&f, 64);
+  pni_frame f = frame_along_z(false, 0.5);
+  pni_fit_request request = request_of(&f, 64);
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, 2), v3(0.25, 0.25, 0.5));
   put_box(&c, 1, v3(0, 0, 9), v3(3, 3, 0.5));
-  pn_fit_result both = fit(&c, &request);
+  pni_fit_result both = fit(&c, &request);
   request.range = 8; /* the second begins at 8.5 */
-  pn_fit_result near = fit(&c, &request);
+  pni_fit_result near = fit(&c, &request);
   assert_true(near.bounds[2] < both.bounds[2] && near.w_far > both.w_far);
   request.range = 8.75; /* part of it lies within */
-  pn_fit_result reaching = fit(&c, &request);
+  pni_fit_result reaching = fit(&c, &request);
   assert_memory_equal(&reaching, &both, sizeof both);
   request.range = 0;
   request.near_distance = 2; /* w_near: nearer casters are taken to be there */
-  pn_fit_result clamped = fit(&c, &request);
+  pni_fit_result clamped = fit(&c, &request);
   assert_true(clamped.w_near > 0.5 && clamped.w_near <= 0.5 * (1 + 2.0 / 7));
   request.near_distance = 20; /* all of them nearer: taken to be there, not left out */
-  pn_fit_result all_near = fit(&c, &request);
+  pni_fit_result all_near = fit(&c, &request);
   assert_false(all_near.empty);
   assert_true(all_near.bounds[2] >= both.bounds[2] && all_near.w_near > 0.05 && all_near.w_far < 0.05);
 }
@@ -247,18 +250,18 @@ static void test_near_and_range(void **state) {
 static void test_close_to_the_light(void **state) {
   (void)state;
   static pn_casters c;
-  pn_frame f = frame_along_z(false, 0.5);
-  pn_fit_request request = request_of(&f, 64);
+  pni_frame f = frame_along_z(false, 0.5);
+  pni_fit_request request = request_of(&f, 64);
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, 0.01), v3(0.001, 0.001, 0.001));
   put_box(&c, 1, v3(0, 0, 100), v3(1, 1, 0.5));
-  pn_fit_result r = fit(&c, &request);
+  pni_fit_result r = fit(&c, &request);
   assert_true(r.bounds[2] >= 0.1 && r.bounds[0] <= -0.1); /* the small box opens wider than the large one */
 }
 
 /* ---- wide lights ---- */
 
-static void assert_tiles_cover(const pn_fit_result *r) {
+static void assert_tiles_cover(const pni_fit_result *r) {
   double edges[2][2] = {{r->bounds[0], r->bounds[2]}, {r->bounds[1], r->bounds[3]}};
   uint64_t seed = 5;
   for (int i = 0; i < 20000; i++) {
@@ -274,12 +277,12 @@ static void assert_tiles_cover(const pn_fit_result *r) {
   }
 }
 
-static pn_fit_result fit_wall(double tangent, bool both_ways) {
+static pni_fit_result fit_wall(double tangent, bool both_ways) {
   static pn_casters c;
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, 5), v3(5 * tangent, both_ways ? 5 * tangent : 1, 0));
-  pn_frame f = frame_along_z(false, 0.5);
-  pn_fit_request request = request_of(&f, 64);
+  pni_frame f = frame_along_z(false, 0.5);
+  pni_fit_request request = request_of(&f, 64);
   return fit(&c, &request);
 }
 
@@ -287,7 +290,7 @@ static void test_tiles(void **state) {
   (void)state;
   const double degree = 0.017453292519943295;
   for (double angle = 40; angle < 89; angle += 1) {
-    pn_fit_result r = fit_wall(tan(angle * degree), false);
+    pni_fit_result r = fit_wall(tan(angle * degree), false);
     double opening = (atan(r.bounds[2]) - atan(r.bounds[0])) / degree;
     assert_int_equal(r.tiles, opening > 120 ? (int)ceil(opening / 60) : 1);
     for (int t = 0; t < r.tiles && r.tiles > 1; t++) { /* 60 degrees at most, without the texel at each side */
@@ -296,9 +299,9 @@ static void test_tiles(void **state) {
     }
     assert_tiles_cover(&r);
     if (angle < 84) assert_false(r.clamped);
-    if (angle > 85) assert_true(r.clamped && r.bounds[2] == PN_TANGENT_MAX && r.bounds[0] == -PN_TANGENT_MAX);
+    if (angle > 85) assert_true(r.clamped && r.bounds[2] == PNI_TANGENT_MAX && r.bounds[0] == -PNI_TANGENT_MAX);
   }
-  pn_fit_result square = fit_wall(tan(80 * degree), true);
+  pni_fit_result square = fit_wall(tan(80 * degree), true);
   assert_int_equal(square.tiles, 9);
   assert_tiles_cover(&square);
 }
@@ -307,15 +310,15 @@ static void test_tiles(void **state) {
 static void test_clamped_means_lost(void **state) {
   (void)state;
   for (double part = 0.9; part < 1; part += 0.001) {
-    pn_fit_result r = fit_wall(part * PN_TANGENT_MAX, false);
+    pni_fit_result r = fit_wall(part * PNI_TANGENT_MAX, false);
     assert_false(r.clamped);
-    assert_true(r.bounds[2] <= PN_TANGENT_MAX);
+    assert_true(r.bounds[2] <= PNI_TANGENT_MAX);
   }
 }
 
 /* ---- what a visible region keeps ---- */
 
-static bool inside_box(const pn_region *g, vec m) {
+static bool inside_box(const pni_region *g, vec m) {
   return m.x >= g->least[0] && m.x <= g->most[0] && m.y >= g->least[1] && m.y <= g->most[1] && m.z >= g->least[2] &&
          m.z <= g->most[2];
 }
@@ -324,11 +327,11 @@ static bool inside_box(const pn_region *g, vec m) {
  * region, the map must hold it. And boxes that no such line meets should not widen the map: the tight region says when. */
 static void check_visible(bool sun, uint64_t seed, bool sheared) {
   static pn_casters c;
-  pn_frame f = frame_along_z(sun, 0.8);
+  pni_frame f = frame_along_z(sun, 0.8);
   int hits = 0;
   for (int round = 0; round < 300; round++) {
     random_boxes(&c, &seed, v3(0, 0, 4), 3, 1.5);
-    pn_region region = pn_region_empty();
+    pni_region region = pni_region_empty();
     vec corner = v3(random_in(&seed, -4, 4), random_in(&seed, -4, 4), random_in(&seed, 3, 8)), some[8];
     for (int i = 0; i < 8; i++) { /* receivers, and the region they make */
       some[i] = add(corner, random_point(&seed, 0.5));
@@ -339,19 +342,20 @@ static void check_visible(bool sun, uint64_t seed, bool sheared) {
         region.most[k] = fmax(region.most[k], value);
       }
     }
-    pn_fit_request request = request_of(&f, 64);
+    pni_fit_request request = request_of(&f, 64);
     for (int k = 0; k < 2 && sheared; k++) request.shear[k] = random_in(&seed, -0.8, 0.8);
     request.visible = &region;
-    pn_fit_result r = fit(&c, &request);
+    pni_fit_result r = fit(&c, &request);
     for (int i = 0; i < 2000; i++) {
       const vec p = some[i % 8];
-      const pn_box *b = &c.callbacks[0].bounds;
+      const pni_box *b = &c.callbacks[0].bounds;
       vec q = v3(random_in(&seed, b->min[0], b->max[0]), random_in(&seed, b->min[1], b->max[1]),
                  random_in(&seed, b->min[2], b->max[2]));
       vec mq = map_of(&f, q), mp = map_of(&f, p);
       if (!(mq.z > mp.z)) continue;
       double x = (mq.x - mp.x) / (mq.z - mp.z), y = (mq.y - mp.y) / (mq.z - mp.z);
-      bool wanted = sheared ? fabs(x - request.shear[0]) < 1e-2 && fabs(y - request.shear[1]) < 1e-2 : fabs(x) <= 0.8 && fabs(y) <= 0.8;
+      bool wanted = sheared ? fabs(x - request.shear[0]) < 1e-2 && fabs(y - request.shear[1]) < 1e-2
+                            : fabs(x) <= 0.8 && fabs(y) <= 0.8;
       if (!wanted) continue;
       hits++;
       assert_false(r.empty);
@@ -375,17 +379,19 @@ static void test_visible_keeps(void **state) {
 static void test_visible_cuts(void **state) {
   (void)state;
   static pn_casters c;
-  pn_frame f = frame_along_z(false, 0.5);
-  pn_region region = {{-0.05, -0.05, 0.1}, {0.05, 0.05, 0.125}}; /* 8 to 10 before the light */
-  pn_fit_request request = request_of(&f, 64);
+  pni_frame f = frame_along_z(false, 0.5);
+  pni_region region = {{-0.05, -0.05, 0.1}, {0.05, 0.05, 0.125}}; /* 8 to 10 before the light */
+  pni_fit_request request = request_of(&f, 64);
   request.visible = &region;
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, 4), v3(0.1, 0.1, 0.1));
-  pn_fit_result alone = fit(&c, &request);
+  pni_fit_result alone = fit(&c, &request);
   assert_false(alone.empty);
-  put_box(&c, 1, v3(0, 0, 20), v3(5, 5, 1));  /* beyond every receiver */
-  put_box(&c, 2, v3(3, 0, 4), v3(1, 0.5, 0.5)); /* aside: s from 2 / 4.5, but the window at w = 1 / 3.5 ends at 0.05 + 0.5 (0.286 - 0.1) = 0.143 */
-  pn_fit_result with = fit(&c, &request);
+  put_box(&c, 1, v3(0, 0, 20), v3(5, 5, 1)); /* beyond every receiver */
+  put_box(&c, 2, v3(3, 0, 4),
+          v3(1, 0.5,
+             0.5)); /* aside: s from 2 / 4.5, but the window at w = 1 / 3.5 ends at 0.05 + 0.5 (0.286 - 0.1) = 0.143 */
+  pni_fit_result with = fit(&c, &request);
   assert_memory_equal(alone.bounds, with.bounds, sizeof alone.bounds);
   c.callbacks[0].draw = NULL;
   assert_true(fit(&c, &request).empty);
@@ -397,20 +403,22 @@ static void test_frustum(void **state) {
   uint64_t seed = 10;
   for (int round = 0; round < 400; round++) {
     bool sun = round & 1, infinite = round & 2, zero_to_one = round & 4;
-    pn_frame f = frame_along_z(sun, 0.5);
+    pni_frame f = frame_along_z(sun, 0.5);
     double near = 0.5, far = 6, low = zero_to_one ? 0 : -1;
     double b = (1 - low) / (infinite ? -1 / near : 1 / far - 1 / near), a = infinite ? 1 : 1 - b / far;
-    pn_matrix projection = {{1.2, 0, 0, 0, 0, 1.5, 0, 0, 0.1, -0.2, -a, -1, 0, 0, b, 0}};
+    pni_matrix projection = {{1.2, 0, 0, 0, 0, 1.5, 0, 0, 0.1, -0.2, -a, -1, 0, 0, b, 0}};
     vec back = random_direction(&seed), right = unit(cross(random_direction(&seed), back)), up = cross(back, right);
     vec eye = random_point(&seed, 4);
-    pn_matrix camera = {{right.x, up.x, back.x, 0, right.y, up.y, back.y, 0, right.z, up.z, back.z, 0, -dot(right, eye), -dot(up, eye), -dot(back, eye), 1}};
-    pn_matrix clip = pn_matrix_multiply(&projection, &camera), inverse;
-    assert_true(pn_matrix_invert(&clip, &inverse));
-    pn_region region = pn_region_empty();
-    pn_region_add_frustum(&region, &f, &inverse, low);
+    pni_matrix camera = {{right.x, up.x, back.x, 0, right.y, up.y, back.y, 0, right.z, up.z, back.z, 0,
+                          -dot(right, eye), -dot(up, eye), -dot(back, eye), 1}};
+    pni_matrix clip = pni_matrix_multiply(&projection, &camera), inverse;
+    assert_true(pni_matrix_invert(&clip, &inverse));
+    pni_region region = pni_region_empty();
+    pni_region_add_frustum(&region, &f, &inverse, low);
     for (int i = 0; i < 200; i++) {
-      double at[4] = {random_in(&seed, -1, 1), random_in(&seed, -1, 1), random_in(&seed, low, infinite ? 0.999 : 1), 1}, h[4];
-      pn_matrix_apply(&inverse, at, h);
+      double at[4] = {random_in(&seed, -1, 1), random_in(&seed, -1, 1), random_in(&seed, low, infinite ? 0.999 : 1), 1},
+             h[4];
+      pni_matrix_apply(&inverse, at, h);
       vec p = v3(h[0] / h[3], h[1] / h[3], h[2] / h[3]);
       if (!sun && p.z <= 1e-6) continue; /* v = -y, so z is the light's z */
       vec m = map_of(&f, p);
@@ -431,25 +439,26 @@ static void test_flat(void **state) {
   const vec halves[] = {{0, 1, 1}, {1, 0, 1}, {0, 0, 1}, {0, 0, 0}, {1, 1, 0}};
   for (int sun = 0; sun < 2; sun++)
     for (int i = 0; i < 5; i++) {
-      pn_frame f = frame_along_z(sun, 0.5);
-      pn_fit_request request = request_of(&f, 64);
+      pni_frame f = frame_along_z(sun, 0.5);
+      pni_fit_request request = request_of(&f, 64);
       memset(&c, 0, sizeof c);
       put_box(&c, 0, v3(0, 0, 5), halves[i]);
-      pn_fit_result r = fit(&c, &request);
+      pni_fit_result r = fit(&c, &request);
       double none[2] = {0, 0};
       extent3 e = exact_extent(&c, &f, none);
       assert_false(r.empty);
       assert_true(r.bounds[0] < r.bounds[2] && r.bounds[1] < r.bounds[3]);
-      assert_true(r.bounds[0] <= e.least.x && r.bounds[2] >= e.most.x && r.bounds[1] <= e.least.y && r.bounds[3] >= e.most.y);
+      assert_true(r.bounds[0] <= e.least.x && r.bounds[2] >= e.most.x && r.bounds[1] <= e.least.y &&
+                  r.bounds[3] >= e.most.y);
       assert_true(r.w_far < e.least.z && e.most.z < r.w_near);
     }
   memset(&c, 0, sizeof c);
-  pn_frame f = frame_along_z(false, 0.5);
-  pn_fit_request request = request_of(&f, 64);
+  pni_frame f = frame_along_z(false, 0.5);
+  pni_fit_request request = request_of(&f, 64);
   assert_true(fit(&c, &request).empty);
   put_box(&c, 3, v3(0, 0, 5), v3(1, 1, 1));
-  pn_fit_result r;
-  pn_fit_maps(&c, ~8u, &request, &r); /* groups */
+  pni_fit_result r;
+  pni_fit_maps(&c, ~8u, &request, &r); /* groups */
   assert_true(r.empty);
 }
 
@@ -458,11 +467,11 @@ static void test_given(void **state) {
   static pn_casters c;
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, 3), v3(2, 2, 0.5));
-  pn_frame f = frame_along_z(false, 0.5);
-  pn_fit_request request = request_of(&f, 64);
+  pni_frame f = frame_along_z(false, 0.5);
+  pni_fit_request request = request_of(&f, 64);
   const float given[6] = {-0.3f, -0.7f, 4, 1.1f, 0.9f, 5};
   request.given = given;
-  pn_fit_result r = fit(&c, &request);
+  pni_fit_result r = fit(&c, &request);
   /* t = -y / z; the box at its nearer side */
   const double want[4] = {-0.3f / 4.0, -0.9f / 4.0, 1.1f / 4.0, 0.7f / 4.0};
   for (int k = 0; k < 4; k++) {
@@ -475,12 +484,19 @@ static void test_given(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cover),         cmocka_unit_test(test_turned_instance),
-      cmocka_unit_test(test_moving_inside), cmocka_unit_test(test_snapping_is_stable),
-      cmocka_unit_test(test_crossing_and_behind), cmocka_unit_test(test_near_and_range), cmocka_unit_test(test_close_to_the_light),
-      cmocka_unit_test(test_tiles),         cmocka_unit_test(test_clamped_means_lost),
-      cmocka_unit_test(test_visible_keeps), cmocka_unit_test(test_visible_cuts),
-      cmocka_unit_test(test_frustum),       cmocka_unit_test(test_flat),
+      cmocka_unit_test(test_cover),
+      cmocka_unit_test(test_turned_instance),
+      cmocka_unit_test(test_moving_inside),
+      cmocka_unit_test(test_snapping_is_stable),
+      cmocka_unit_test(test_crossing_and_behind),
+      cmocka_unit_test(test_near_and_range),
+      cmocka_unit_test(test_close_to_the_light),
+      cmocka_unit_test(test_tiles),
+      cmocka_unit_test(test_clamped_means_lost),
+      cmocka_unit_test(test_visible_keeps),
+      cmocka_unit_test(test_visible_cuts),
+      cmocka_unit_test(test_frustum),
+      cmocka_unit_test(test_flat),
       cmocka_unit_test(test_given),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

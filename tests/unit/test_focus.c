@@ -41,7 +41,7 @@ static void update(stage *s, const pn_light_desc *light, const char *technique, 
 }
 
 static float **read_layers(const stage *s) {
-  const pn_texture *depth = &s->light->maps.depth;
+  const pni_texture *depth = &s->light->maps.depth;
   float **layers = calloc((size_t)depth->layers, sizeof *layers);
   for (int i = 0; i < depth->layers; i++) layers[i] = gl_read_depth(depth->id, i, depth->width, depth->height);
   return layers;

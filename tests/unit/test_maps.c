@@ -11,11 +11,11 @@
 /* A light at the origin along z, u along x, v = u x z along -y: so t = -y w. */
 typedef struct {
   stage s;
-  pn_gpu *gpu;
-  pn_frame frame;
-  pn_maps maps;
-  pn_map_draw draw;
-  pn_light_block block;
+  pni_gpu *gpu;
+  pni_frame frame;
+  pni_maps maps;
+  pni_map_draw draw;
+  pni_light_block block;
 } bench;
 
 static void bench_open(bench *b, bool sun) {
@@ -23,31 +23,35 @@ static void bench_open(bench *b, bool sun) {
   memset(b, 0, sizeof *b);
   stage_open(&b->s);
   b->gpu = &b->s.context->gpu;
-  assert_true(pn_frame_axes(z, u, &b->frame));
+  assert_true(pni_frame_axes(z, u, &b->frame));
   b->frame.sun = sun;
   b->frame.extent[0] = b->frame.extent[1] = 0.5;
-  b->draw = (pn_map_draw){.frame = &b->frame, .casters = b->s.casters, .groups = PN_GROUPS_ALL, .bounds = {-1, -1, 1, 1},
-                          .w_near = sun ? -1 : 1, .w_far = sun ? -9 : 0.1};
+  b->draw = (pni_map_draw){.frame = &b->frame,
+                           .casters = b->s.casters,
+                           .groups = PN_GROUPS_ALL,
+                           .bounds = {-1, -1, 1, 1},
+                           .w_near = sun ? -1 : 1,
+                           .w_far = sun ? -9 : 0.1};
 }
 
 static void bench_close(bench *b) {
-  pn_maps_free(b->gpu, &b->maps, false);
+  pni_maps_free(b->gpu, &b->maps, false);
   stage_close(&b->s);
 }
 
-static void bench_draw(bench *b, const pn_maps_want *want, int width, int height) {
-  assert_ok(pn_maps_shape(b->gpu, &b->maps, want, 1, width, height));
-  pn_block_frame(&b->block, &b->frame, b->gpu, 1, b->maps.layers, width, height);
-  pn_block_map(&b->block, b->gpu, &b->draw, width, height);
-  assert_ok(pn_maps_draw(b->gpu, &b->maps, &b->draw));
+static void bench_draw(bench *b, const pni_maps_want *want, int width, int height) {
+  assert_ok(pni_maps_shape(b->gpu, &b->maps, want, 1, width, height));
+  pni_block_frame(&b->block, &b->frame, b->gpu, 1, b->maps.layers, width, height);
+  pni_block_map(&b->block, b->gpu, &b->draw, width, height);
+  assert_ok(pni_maps_draw(b->gpu, &b->maps, &b->draw));
   if (want->range.structure) {
-    pn_buffer buffer = {0};
-    assert_ok(pn_uniform_buffer_set(b->gpu, &buffer, &b->block, sizeof b->block));
-    glBindBufferBase(GL_UNIFORM_BUFFER, PN_BLOCK_BINDING, buffer.id);
-    assert_ok(pn_range_build(b->gpu, &b->maps));
-    pn_buffer_free(b->gpu, &buffer, false);
+    pni_buffer buffer = {0};
+    assert_ok(pni_uniform_buffer_set(b->gpu, &buffer, &b->block, sizeof b->block));
+    glBindBufferBase(GL_UNIFORM_BUFFER, PNI_BLOCK_BINDING, buffer.id);
+    assert_ok(pni_range_build(b->gpu, &b->maps));
+    pni_buffer_free(b->gpu, &buffer, false);
   }
-  pn_state_reset(b->gpu);
+  pni_state_reset(b->gpu);
 }
 
 static float *layer_of(const bench *b, int layer) {
@@ -56,11 +60,11 @@ static float *layer_of(const bench *b, int layer) {
 
 static double w_of(const bench *b, double depth) {
   double scale[2];
-  pn_depth_scale(b->draw.w_near, b->draw.w_far, scale);
+  pni_depth_scale(b->draw.w_near, b->draw.w_far, scale);
   return scale[0] + scale[1] * depth;
 }
 
-static const pn_maps_want one_layer = {.near_layers = 1};
+static const pni_maps_want one_layer = {.near_layers = 1};
 
 /* ---- one plane ---- */
 
@@ -86,14 +90,16 @@ static void check_plane(bool sun, uint64_t *seed, int width, int height) {
   bench_draw(&b, &one_layer, width, height);
   float *depth = layer_of(&b, 0);
   double ds = (bounds[2] - bounds[0]) / width, dt = (bounds[3] - bounds[1]) / height;
-  double slope = fabs(plane_w(&b, n, c, ds, dt) - plane_w(&b, n, c, 0, dt)) + fabs(plane_w(&b, n, c, ds, dt) - plane_w(&b, n, c, ds, 0));
+  double slope = fabs(plane_w(&b, n, c, ds, dt) - plane_w(&b, n, c, 0, dt)) +
+                 fabs(plane_w(&b, n, c, ds, dt) - plane_w(&b, n, c, ds, 0));
   /* The soup's floats move its corners by half a unit in the last place of 12. */
   double allowed = b.block.range[2] + b.block.range[3] * slope + 12 * 0x1p-24 * (sun ? 4 : 1);
   for (int i = 0; i < width * height; i++) {
     double at_s = bounds[0] + (i % width + 0.5) * ds, at_t = bounds[1] + (i / width + 0.5) * dt;
     double want = plane_w(&b, n, c, at_s, at_t), found = w_of(&b, depth[i]);
     if (!(fabs(found - want) <= allowed))
-      fail_msg("texel %d, %d of %d x %d: w %.9g, not %.9g +- %.3g", i % width, i / width, width, height, found, want, allowed);
+      fail_msg("texel %d, %d of %d x %d: w %.9g, not %.9g +- %.3g", i % width, i / width, width, height, found, want,
+               allowed);
   }
   free(depth);
   soup_free(&plane);
@@ -134,8 +140,7 @@ static void check_layer(const bench *b, int layer, double z, float nothing) {
   for (int i = 0; i < size * size; i++) {
     if (z > 0 && inside_half(i % size, size) && inside_half(i / size, size))
       assert_true(fabs(w_of(b, depth[i]) - w) <= b->block.range[2]);
-    else
-      assert_true(depth[i] == nothing);
+    else assert_true(depth[i] == nothing);
   }
   free(depth);
 }
@@ -147,7 +152,7 @@ static void test_layers(void **state) {
       bench b;
       bench_open(&b, sun);
       cast_stack(&b);
-      const pn_maps_want want = {.near_layers = layers, .farthest = layers & 1};
+      const pni_maps_want want = {.near_layers = layers, .farthest = layers & 1};
       bench_draw(&b, &want, 16, 16);
       assert_int_equal(b.maps.layers, layers + (layers & 1));
       for (int i = 0; i < layers; i++) check_layer(&b, i, i < QUADS ? distances[i] : 0, 1);
@@ -160,7 +165,7 @@ static void test_farthest_alone(void **state) {
   (void)state;
   bench b;
   bench_open(&b, false);
-  const pn_maps_want want = {.farthest = true};
+  const pni_maps_want want = {.farthest = true};
   bench_draw(&b, &want, 16, 16); /* nothing casts */
   check_layer(&b, 0, 0, 0);
   cast_stack(&b);
@@ -172,15 +177,18 @@ static void test_farthest_alone(void **state) {
 /* The faces of a block that a pass asks for: front faces are those whose outside the light sees. */
 static void test_faces(void **state) {
   (void)state;
-  static const struct { pn_faces faces; double nearest, farthest; } cases[] = {
-      {PN_FACES_ANY, 3, 5}, {PN_FACES_FRONT, 3, 3}, {PN_FACES_BACK, 5, 5}};
+  static const struct {
+    pn_faces faces;
+    double nearest, farthest;
+  } cases[] = {{PN_FACES_ANY, 3, 5}, {PN_FACES_FRONT, 3, 3}, {PN_FACES_BACK, 5, 5}};
   for (int i = 0; i < 3; i++) {
     bench b;
     soup block = {0};
     bench_open(&b, true);
     soup_block(&block, v3(0, 0, 4), v3(2, 0, 0), v3(0, 2, 0), v3(0, 0, 1));
     stage_cast(&b.s, &block);
-    const pn_maps_want want = {.near_layers = 1, .farthest = true, .near_faces = cases[i].faces, .far_faces = cases[i].faces};
+    const pni_maps_want want = {
+        .near_layers = 1, .farthest = true, .near_faces = cases[i].faces, .far_faces = cases[i].faces};
     bench_draw(&b, &want, 4, 4);
     float *near = layer_of(&b, 0), *far = layer_of(&b, 1);
     for (int k = 0; k < 16; k++) {
@@ -212,7 +220,7 @@ static void test_crossing_layers(void **state) {
     stage_cast(&b.s, &sheet);
     soup_free(&sheet);
   }
-  const pn_maps_want want = {.near_layers = SHEETS};
+  const pni_maps_want want = {.near_layers = SHEETS};
   bench_draw(&b, &want, SIZE, SIZE);
   float *layers[SHEETS];
   for (int k = 0; k < SHEETS; k++) layers[k] = layer_of(&b, k);
@@ -267,8 +275,7 @@ static void test_near_and_behind(void **state) {
     double s = -1 + (i % 10 + 0.5) * 0.2;
     if (s < 0.15) /* the wall ends at z = 5 */
       assert_true(depth[i] == 1);
-    else if (s > 0.25)
-      assert_true(fabs(w_of(&b, depth[i]) - s) <= b.block.range[2] + b.block.range[3] * 0.2);
+    else if (s > 0.25) assert_true(fabs(w_of(&b, depth[i]) - s) <= b.block.range[2] + b.block.range[3] * 0.2);
   }
   free(depth);
   soup_free(&near);
@@ -279,7 +286,9 @@ static void test_near_and_behind(void **state) {
 
 /* ---- ranges ---- */
 
-typedef struct { double most, least; } range2;
+typedef struct {
+  double most, least;
+} range2;
 
 static range2 join(range2 a, range2 b) { return (range2){fmax(a.most, b.most), fmin(a.least, b.least)}; }
 
@@ -314,7 +323,7 @@ static int at_most(int a, int b) { return a < b ? a : b; }
 
 /* Level i over blocks of 2^i texels a side, down to one block, however long the map is. */
 static void check_pyramid(const bench *b) {
-  const pn_texture *range = &b->maps.range;
+  const pni_texture *range = &b->maps.range;
   float *depth = layer_of(b, 0);
   assert_true(range->width >= b->maps.depth.width && range->height >= b->maps.depth.height);
   for (int level = 0; level < range->levels; level++) {
@@ -322,7 +331,8 @@ static void check_pyramid(const bench *b) {
     float *found = gl_read_texture(range->id, level, 0, w, h, 2);
     for (int i = 0; i < w * h; i++) {
       int x = (i % w) << level, y = (i / w) << level, size = 1 << level;
-      assert_range(found + 2 * i, over(b, depth, x, y, at_most(x + size, range->width), at_most(y + size, range->height)));
+      assert_range(found + 2 * i,
+                   over(b, depth, x, y, at_most(x + size, range->width), at_most(y + size, range->height)));
     }
     free(found);
     if (level == range->levels - 1) assert_true(w == 1 && h == 1);
@@ -332,7 +342,7 @@ static void check_pyramid(const bench *b) {
 
 /* Level i, a layer of the array, over the 2^i x 2^i texels around each texel, as far as the map has them. */
 static void check_stack(const bench *b) {
-  const pn_texture *range = &b->maps.range;
+  const pni_texture *range = &b->maps.range;
   int width = b->maps.depth.width, height = b->maps.depth.height;
   float *depth = layer_of(b, 0);
   assert_true(range->width == width && range->height == height && 1 << (range->layers - 1) >= at_least(width, height));
@@ -341,7 +351,8 @@ static void check_stack(const bench *b) {
     int before = (1 << level) / 2, after = (1 << level) - before;
     for (int i = 0; i < width * height; i++) {
       int x = i % width, y = i / width;
-      assert_range(found + 2 * i, over(b, depth, at_least(x - before, 0), at_least(y - before, 0), at_most(x + after, width), at_most(y + after, height)));
+      assert_range(found + 2 * i, over(b, depth, at_least(x - before, 0), at_least(y - before, 0),
+                                       at_most(x + after, width), at_most(y + after, height)));
     }
     free(found);
   }
@@ -362,22 +373,23 @@ static void cast_leaves(bench *b, uint64_t seed) {
 /* Small maps with several layers: every size and number of them can be drawn. */
 static void test_small_layered(void **state) {
   (void)state;
-  for (int structure = PN_RANGE_PYRAMID; structure <= PN_RANGE_STACK; structure++)
+  for (int structure = PNI_RANGE_PYRAMID; structure <= PNI_RANGE_STACK; structure++)
     for (int i = 0; i < 64; i++) {
-      const pn_maps_want want = {.near_layers = 1 + i % 4, .farthest = i & 1, .range = {(pn_range_structure)structure, false, false}};
+      const pni_maps_want want = {
+          .near_layers = 1 + i % 4, .farthest = i & 1, .range = {(pni_range_structure)structure, false, false}};
       bench b;
       bench_open(&b, false);
       cast_leaves(&b, 4);
       bench_draw(&b, &want, 1 + i / 4 % 4, 1 + i / 16);
-      if (structure == PN_RANGE_PYRAMID) check_pyramid(&b);
+      if (structure == PNI_RANGE_PYRAMID) check_pyramid(&b);
       bench_close(&b);
     }
 }
 
-static void check_ranges(pn_range_structure structure, void (*check)(const bench *)) {
+static void check_ranges(pni_range_structure structure, void (*check)(const bench *)) {
   static const int more[][2] = {{64, 64}, {100, 37}, {1, 64}, {65, 2}};
   for (int quads = 0; quads < 2; quads++) {
-    const pn_maps_want want = {.near_layers = 1, .range = {structure, quads, false}};
+    const pni_maps_want want = {.near_layers = 1, .range = {structure, quads, false}};
     bench b;
     bench_open(&b, false);
     cast_leaves(&b, 3);
@@ -395,20 +407,19 @@ static void check_ranges(pn_range_structure structure, void (*check)(const bench
 
 static void test_pyramid(void **state) {
   (void)state;
-  check_ranges(PN_RANGE_PYRAMID, check_pyramid);
+  check_ranges(PNI_RANGE_PYRAMID, check_pyramid);
 }
 
 static void test_stack(void **state) {
   (void)state;
-  check_ranges(PN_RANGE_STACK, check_stack);
+  check_ranges(PNI_RANGE_STACK, check_stack);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plane),           cmocka_unit_test(test_layers),          cmocka_unit_test(test_farthest_alone),
-      cmocka_unit_test(test_faces),           cmocka_unit_test(test_crossing_layers), cmocka_unit_test(test_near_and_behind),
-      cmocka_unit_test(test_pyramid),         cmocka_unit_test(test_stack),
-      cmocka_unit_test(test_small_layered),
+      cmocka_unit_test(test_plane),   cmocka_unit_test(test_layers),          cmocka_unit_test(test_farthest_alone),
+      cmocka_unit_test(test_faces),   cmocka_unit_test(test_crossing_layers), cmocka_unit_test(test_near_and_behind),
+      cmocka_unit_test(test_pyramid), cmocka_unit_test(test_stack),           cmocka_unit_test(test_small_layered),
   };
   return GL_RUN("maps", tests);
 }

@@ -7,7 +7,7 @@
 #include "light.h"
 #include "stage.h"
 
-static double w_at(const pn_maps *maps, int map, const float *depth, int x, int y) {
+static double w_at(const pni_maps *maps, int map, const float *depth, int x, int y) {
   bool inside = x >= 0 && y >= 0 && x < maps->depth.width && y < maps->depth.height;
   double d = inside ? depth[y * maps->depth.width + x] : 0;
   return d <= 0 || d >= 1 ? -1e30 : maps->block.map_depth[map][0] + maps->block.map_depth[map][1] * d;
@@ -15,7 +15,7 @@ static double w_at(const pn_maps *maps, int map, const float *depth, int x, int 
 
 /* Over texels from (x0, y0) up to, not including, (x1, y1); over quads each brings its right and upper neighbours. found: largest, smallest, and where
  * it is kept the smallest of what is there. */
-static void assert_range(const pn_maps *maps, int map, const float *depth, const int box[4], const float *found) {
+static void assert_range(const pni_maps *maps, int map, const float *depth, const int box[4], const float *found) {
   int more = maps->want.range.quads ? 1 : 0;
   double most = -1e30, least = 1e30, there = 1e30;
   for (int y = box[1]; y < box[3] + more; y++)
@@ -27,29 +27,37 @@ static void assert_range(const pn_maps *maps, int map, const float *depth, const
   const double want[3] = {most, least, there};
   /* One product and one sum in float. */
   for (int i = 0; i < (maps->want.range.least_there ? 3 : 2); i++) {
-    double allowed = fabs(want[i]) > 1e29 ? 1e24 : 4 * 0x1p-24 * (fabs(maps->block.map_depth[map][0]) + fabs(maps->block.map_depth[map][1]));
-    if (!(fabs(found[i] - want[i]) <= allowed)) fail_msg("map %d, texels %d..%d x %d..%d: %.9g, not %.9g", map, box[0], box[2], box[1], box[3], found[i], want[i]);
+    double allowed = fabs(want[i]) > 1e29
+                         ? 1e24
+                         : 4 * 0x1p-24 * (fabs(maps->block.map_depth[map][0]) + fabs(maps->block.map_depth[map][1]));
+    if (!(fabs(found[i] - want[i]) <= allowed))
+      fail_msg("map %d, texels %d..%d x %d..%d: %.9g, not %.9g", map, box[0], box[2], box[1], box[3], found[i],
+               want[i]);
   }
 }
 
 static int at_most(int a, int b) { return a < b ? a : b; }
 static int at_least(int a, int b) { return a > b ? a : b; }
 
-static void check_layer(const pn_maps *maps, int index) {
-  const pn_texture *range = &maps->range;
+static void check_layer(const pni_maps *maps, int index) {
+  const pni_texture *range = &maps->range;
   int width = maps->depth.width, height = maps->depth.height, map = index / maps->layers;
-  bool stack = maps->want.range.structure == PN_RANGE_STACK;
+  bool stack = maps->want.range.structure == PNI_RANGE_STACK;
   int levels = stack ? range->layers / maps->depth.layers : range->levels;
   float *depth = gl_read_depth(maps->depth.id, index, width, height);
   int channels = maps->want.range.least_there ? 3 : 2;
   for (int level = 0; level < levels; level++) {
-    int w = stack ? width : at_least(range->width >> level, 1), h = stack ? height : at_least(range->height >> level, 1), size = 1 << level;
-    float *found = stack ? gl_read_texture(range->id, 0, index * levels + level, w, h, channels) : gl_read_texture(range->id, level, index, w, h, channels);
+    int w = stack ? width : at_least(range->width >> level, 1),
+        h = stack ? height : at_least(range->height >> level, 1), size = 1 << level;
+    float *found = stack ? gl_read_texture(range->id, 0, index * levels + level, w, h, channels)
+                         : gl_read_texture(range->id, level, index, w, h, channels);
     for (int i = 0; i < w * h; i++) {
       int x = i % w, y = i / w;
       /* Fig. 7: the neighbourhood is centred, half of it before its texel; the border is clamped. A pyramid's blocks are padded with nothing. */
-      const int around[4] = {at_least(x - size / 2, 0), at_least(y - size / 2, 0), at_most(x + size - size / 2, width), at_most(y + size - size / 2, height)};
-      const int block[4] = {x * size, y * size, at_most((x + 1) * size, range->width), at_most((y + 1) * size, range->height)};
+      const int around[4] = {at_least(x - size / 2, 0), at_least(y - size / 2, 0), at_most(x + size - size / 2, width),
+                             at_most(y + size - size / 2, height)};
+      const int block[4] = {x * size, y * size, at_most((x + 1) * size, range->width),
+                            at_most((y + 1) * size, range->height)};
       assert_range(maps, map, depth, stack ? around : block, found + channels * i);
     }
     free(found);
@@ -73,7 +81,7 @@ static void look(const char *spec, bool wide, int width, int height) {
   assert_ok(pn_light_technique(s.light, spec, NULL, 0));
   assert_ok(pn_light_set(s.light, &light));
   assert_ok(pn_maps_update(s.light, s.casters, PN_GROUPS_ALL, NULL, 0));
-  const pn_maps *maps = &s.light->maps;
+  const pni_maps *maps = &s.light->maps;
   int tiles = (int)maps->block.maps[0];
   assert_true(wide ? tiles > 1 : tiles == 1);
   assert_int_equal(maps->depth.layers, tiles * maps->layers);
@@ -82,9 +90,11 @@ static void look(const char *spec, bool wide, int width, int height) {
   stage_close(&s);
 }
 
-static const char *const kinds[] = {"bitmask:maps=two-sided,primitive=quad,merge=0,hierarchy=", "bitmask:maps=layers,layers=3,primitive=patch,merge=0,hierarchy=",
+static const char *const kinds[] = {"bitmask:maps=two-sided,primitive=quad,merge=0,hierarchy=",
+                                    "bitmask:maps=layers,layers=3,primitive=patch,merge=0,hierarchy=",
                                     "bitmask:maps=layers,layers=2,primitive=quad,focus=40,merge=0,hierarchy=",
-                                    "bitmask:maps=two-sided,primitive=quad,merge=1,focus=60,hierarchy=", "backprojection:primitive=patch,merge=1,hierarchy="};
+                                    "bitmask:maps=two-sided,primitive=quad,merge=1,focus=60,hierarchy=",
+                                    "backprojection:primitive=patch,merge=1,hierarchy="};
 
 static void check(const char *hierarchy) {
   static const int sizes[][2] = {{1, 1}, {17, 17}, {16, 5}, {3, 20}};

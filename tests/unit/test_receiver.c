@@ -18,10 +18,14 @@ typedef struct {
 
 /* ---- surface.glsl run on a view ---- */
 
-typedef struct { float *p, *n, *error; int width; } surfaces; /* four floats a pixel: p and sigma, n, error */
+typedef struct {
+  float *p, *n, *error;
+  int width;
+} surfaces; /* four floats a pixel: p and sigma, n, error */
 
 static const char main_text[] =
-    "layout(location = 0) out vec4 out_p; layout(location = 1) out vec4 out_n; layout(location = 2) out vec4 out_error;\n"
+    "layout(location = 0) out vec4 out_p; layout(location = 1) out vec4 out_n; layout(location = 2) out vec4 "
+    "out_error;\n"
     "void main() {\n"
     "  ivec2 pixel = ivec2(gl_FragCoord.xy);\n"
     "  out_p = out_n = out_error = vec4(0.0);\n"
@@ -32,33 +36,34 @@ static const char main_text[] =
 static const char vertex_text[] =
     "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }\n";
 
-static GLuint surface_program(pn_gpu *gpu, pn_receiver *receiver, pn_program *names) {
+static GLuint surface_program(pni_gpu *gpu, pn_receiver *receiver, pni_program *names) {
   static const char *const paths[] = {"shaders/precision.glsl", "search/receiver.glsl", "receiver/surface.glsl", NULL};
-  static const char *const uniforms[] = {"pn_light_from_pixel", "pn_pixel_from_light", "pn_light_from_normal", "pn_eye",
-                                         "pn_view", "pn_offset", "pn_quantum"};
-  char defines[PN_RECEIVER_DEFINES], *text;
-  pn_receiver_defines(receiver, defines);
-  assert_ok(pn_shader_text(gpu, paths, defines, &text));
+  static const char *const uniforms[] = {
+      "pn_light_from_pixel", "pn_pixel_from_light", "pn_light_from_normal", "pn_eye", "pn_view",
+      "pn_offset",           "pn_quantum"};
+  char defines[PNI_RECEIVER_DEFINES], *text;
+  pni_receiver_defines(receiver, defines);
+  assert_ok(pni_shader_text(gpu, paths, defines, &text));
   char *whole = malloc(strlen(text) + sizeof main_text);
   sprintf(whole, "%s%s", text, main_text);
-  pn_free(gpu, text);
+  pni_free(gpu, text);
   GLuint program = gl_program(vertex_text, whole);
   free(whole);
-  *names = (pn_program){.id = program, .uniform_count = 7};
+  *names = (pni_program){.id = program, .uniform_count = 7};
   for (int i = 0; i < 7; i++) {
-    snprintf(names->uniforms[i].name, PN_UNIFORM_NAME, "%s", uniforms[i]);
+    snprintf(names->uniforms[i].name, PNI_UNIFORM_NAME, "%s", uniforms[i]);
     names->uniforms[i].location = glGetUniformLocation(program, uniforms[i]);
   }
   glUseProgram(program);
-  glUniform1i(glGetUniformLocation(program, "pn_depth"), PN_UNIT_DEPTH);
-  glUniform1i(glGetUniformLocation(program, "pn_normal"), PN_UNIT_NORMAL);
+  glUniform1i(glGetUniformLocation(program, "pn_depth"), PNI_UNIT_DEPTH);
+  glUniform1i(glGetUniformLocation(program, "pn_normal"), PNI_UNIT_NORMAL);
   return program;
 }
 
-static surfaces run(stage *s, const view *v, const pn_frame *frame) {
+static surfaces run(stage *s, const view *v, const pni_frame *frame) {
   int width = v->camera.width, height = v->camera.height;
-  pn_gpu *gpu = &s->context->gpu;
-  pn_program names;
+  pni_gpu *gpu = &s->context->gpu;
+  pni_program names;
   GLuint program = surface_program(gpu, s->receiver, &names), framebuffer, array, images[IMAGES];
   static const GLenum all[IMAGES] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
   glGenTextures(IMAGES, images);
@@ -73,12 +78,13 @@ static surfaces run(stage *s, const view *v, const pn_frame *frame) {
   }
   glDrawBuffers(IMAGES, all);
   glViewport(0, 0, width, height);
-  pn_receiver_bind(s->receiver, &names, frame, 1);
+  pni_receiver_bind(s->receiver, &names, frame, 1);
   glBindVertexArray(array);
   glDrawArrays(GL_TRIANGLES, 0, 3);
-  surfaces out = {gl_read_texture(images[0], 0, -1, width, height, 4), gl_read_texture(images[1], 0, -1, width, height, 4),
+  surfaces out = {gl_read_texture(images[0], 0, -1, width, height, 4),
+                  gl_read_texture(images[1], 0, -1, width, height, 4),
                   gl_read_texture(images[2], 0, -1, width, height, 4), width};
-  pn_state_reset(gpu);
+  pni_state_reset(gpu);
   glDeleteTextures(IMAGES, images);
   glDeleteVertexArrays(1, &array);
   glDeleteFramebuffers(1, &framebuffer);
@@ -88,9 +94,10 @@ static surfaces run(stage *s, const view *v, const pn_frame *frame) {
 
 /* ---- truth ---- */
 
-static vec in_light(const pn_frame *f, vec p, double one) {
+static vec in_light(const pni_frame *f, vec p, double one) {
   vec o = v3(f->origin[0], f->origin[1], f->origin[2]), d = sub(p, mul(one, o));
-  return v3(dot(d, v3(f->u[0], f->u[1], f->u[2])), dot(d, v3(f->v[0], f->v[1], f->v[2])), dot(d, v3(f->z[0], f->z[1], f->z[2])));
+  return v3(dot(d, v3(f->u[0], f->u[1], f->u[2])), dot(d, v3(f->v[0], f->v[1], f->v[2])),
+            dot(d, v3(f->z[0], f->z[1], f->z[2])));
 }
 
 static vec at(const float *values, int i) { return v3(values[4 * i], values[4 * i + 1], values[4 * i + 2]); }
@@ -116,7 +123,10 @@ static bool plane_is_known(const view *v, int x, int y) {
   return true;
 }
 
-typedef struct { int pixels, planes, wrong_planes; double worst_p, worst_n; } tally;
+typedef struct {
+  int pixels, planes, wrong_planes;
+  double worst_p, worst_n;
+} tally;
 
 /* Cosine between the surface's normal and the ray. */
 static double facing_of(const view *v, int x, int y) {
@@ -131,7 +141,8 @@ static double host_error(const view *v, int x, int y) {
   return 4 * 0x1p-24 * (length(v->camera.eye) + 4.3) * sqrt(fmax(1 - facing * facing, 0)) / facing;
 }
 
-static void check_pixel(const surfaces *s, const view *v, const pn_frame *frame, bool normals, int x, int y, tally *out) {
+static void check_pixel(const surfaces *s, const view *v, const pni_frame *frame, bool normals, int x, int y,
+                        tally *out) {
   int i = y * s->width + x;
   vec p = in_light(frame, view_point(v, x, y), 1), n = in_light(frame, view_normal(v, x, y), 0);
   double host = host_error(v, x, y);
@@ -142,7 +153,8 @@ static void check_pixel(const surfaces *s, const view *v, const pn_frame *frame,
   bool inner = view_flat_around(v, x, y, 1);
   if (inner) out->worst_p = fmax(out->worst_p, share);
   if (!normals && !plane_is_known(v, x, y)) return;
-  double angle = length(cross(at(s->n, i), n)), sigma = s->p[4 * i + 3] + 1e-6; /* as pn_receiver adds it for float arithmetic */
+  double angle = length(cross(at(s->n, i), n)),
+         sigma = s->p[4 * i + 3] + 1e-6; /* as pn_receiver adds it for float arithmetic */
   out->planes++;
   if (dot(at(s->n, i), n) < 0 || angle > sigma) {
     if (normals ? inner : view_flat_around(v, x, y, 2)) out->worst_n = fmax(out->worst_n, angle / sigma);
@@ -150,7 +162,7 @@ static void check_pixel(const surfaces *s, const view *v, const pn_frame *frame,
   }
 }
 
-static tally check(const setup *t, const soup *scene, const pn_frame *frame) {
+static tally check(const setup *t, const soup *scene, const pni_frame *frame) {
   view v;
   stage s;
   tally found = {0};
@@ -181,7 +193,8 @@ static tally check(const setup *t, const soup *scene, const pn_frame *frame) {
 
 static soup make_scene(uint64_t *seed) {
   soup scene = {0};
-  soup_patch(&scene, v3(0, 0, 0), v3(1.5, 0, 0), v3(0, 0, 1.5)); /* ends before the near plane: clipping makes new vertices */
+  soup_patch(&scene, v3(0, 0, 0), v3(1.5, 0, 0),
+             v3(0, 0, 1.5)); /* ends before the near plane: clipping makes new vertices */
   for (int i = 0; i < 4; i++) {
     vec a = random_direction(seed), b = unit(cross(a, random_direction(seed)));
     soup_block(&scene, add(v3(0, 0.5, 0), random_point(seed, 0.8)), mul(0.3, a), mul(0.3, b), mul(0.3, cross(a, b)));
@@ -190,18 +203,33 @@ static soup make_scene(uint64_t *seed) {
 }
 
 static setup random_setup(uint64_t *seed) {
-  static const struct { GLenum format; bool reversed, orthographic; const char *name; } kinds[] = {
-      {GL_DEPTH_COMPONENT32F, false, false, "perspective D32F"}, {GL_DEPTH_COMPONENT24, false, false, "perspective D24"},
-      {GL_DEPTH_COMPONENT16, false, false, "perspective D16"},   {GL_DEPTH_COMPONENT32F, true, false, "perspective reversed"},
-      {GL_DEPTH_COMPONENT32F, false, true, "orthographic D32F"}, {GL_DEPTH_COMPONENT24, false, true, "orthographic D24"},
-      {GL_DEPTH_COMPONENT16, false, true, "orthographic D16"},   {GL_DEPTH_COMPONENT32F, true, true, "orthographic reversed"}};
+  static const struct {
+    GLenum format;
+    bool reversed, orthographic;
+    const char *name;
+  } kinds[] = {{GL_DEPTH_COMPONENT32F, false, false, "perspective D32F"},
+               {GL_DEPTH_COMPONENT24, false, false, "perspective D24"},
+               {GL_DEPTH_COMPONENT16, false, false, "perspective D16"},
+               {GL_DEPTH_COMPONENT32F, true, false, "perspective reversed"},
+               {GL_DEPTH_COMPONENT32F, false, true, "orthographic D32F"},
+               {GL_DEPTH_COMPONENT24, false, true, "orthographic D24"},
+               {GL_DEPTH_COMPONENT16, false, true, "orthographic D16"},
+               {GL_DEPTH_COMPONENT32F, true, true, "orthographic reversed"}};
   int i = (int)random_in(seed, 0, epoxy_has_gl_extension("GL_ARB_clip_control") ? 8 : 3);
   setup t = {.name = kinds[i].name, .normals = random_bits(seed) & 1};
   vec from = random_direction(seed);
   from.y = fabs(from.y) + 0.1;
-  t.camera = (camera){.width = 61, .height = 47, .eye = mul(4, unit(from)), .target = v3(0, 0.3, 0), .up = v3(0, 1, 0.01),
-                      .orthographic = kinds[i].orthographic, .half_height = kinds[i].orthographic ? 1.6 : 0.4,
-                      .near = random_in(seed, 0.05, 0.5), .far = 20, .reversed = kinds[i].reversed, .depth_format = kinds[i].format};
+  t.camera = (camera){.width = 61,
+                      .height = 47,
+                      .eye = mul(4, unit(from)),
+                      .target = v3(0, 0.3, 0),
+                      .up = v3(0, 1, 0.01),
+                      .orthographic = kinds[i].orthographic,
+                      .half_height = kinds[i].orthographic ? 1.6 : 0.4,
+                      .near = random_in(seed, 0.05, 0.5),
+                      .far = 20,
+                      .reversed = kinds[i].reversed,
+                      .depth_format = kinds[i].format};
   return t;
 }
 
@@ -213,12 +241,12 @@ static void test_declared_errors(void **state) {
     soup scene = make_scene(&seed);
     setup t = random_setup(&seed);
     static const float z[3] = {0.3f, -1, 0.2f}, u[3] = {1, 0.1f, 0};
-    pn_frame frame = {.origin = {-0.5, random_in(&seed, 2, 40), 0.3}, .sun = random_bits(&seed) & 1};
-    assert_true(pn_frame_axes(z, u, &frame));
+    pni_frame frame = {.origin = {-0.5, random_in(&seed, 2, 40), 0.3}, .sun = random_bits(&seed) & 1};
+    assert_true(pni_frame_axes(z, u, &frame));
     tally found = check(&t, &scene, &frame);
     if (found.worst_p > 1 || found.worst_n > 1)
-      print_message("%s%s: position off by %.2f of its error, plane by %.2f\n", t.name, t.normals ? " with normals" : "", found.worst_p,
-                    found.worst_n);
+      print_message("%s%s: position off by %.2f of its error, plane by %.2f\n", t.name,
+                    t.normals ? " with normals" : "", found.worst_p, found.worst_n);
     total.pixels += found.pixels;
     total.planes += found.planes;
     total.wrong_planes += found.wrong_planes;
@@ -226,8 +254,8 @@ static void test_declared_errors(void **state) {
     total.worst_n = fmax(total.worst_n, found.worst_n);
     soup_free(&scene);
   }
-  print_message("%d pixels, off by %.2f of the declared error at most; %d planes, %.2f; %d wrong at edges\n", total.pixels, total.worst_p,
-                total.planes, total.worst_n, total.wrong_planes);
+  print_message("%d pixels, off by %.2f of the declared error at most; %d planes, %.2f; %d wrong at edges\n",
+                total.pixels, total.worst_p, total.planes, total.worst_n, total.wrong_planes);
   assert_true(total.pixels > 60 * 500 && total.planes > 60 * 400);
   assert_true(total.worst_p <= 1);
   assert_true(total.worst_n <= 1);

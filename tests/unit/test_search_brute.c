@@ -14,16 +14,20 @@ typedef enum { PATCH, QUAD, EXACT } primitive;
 /* ---- the maps as GL drew them ---- */
 
 typedef struct {
-  const pn_light_block *block;
-  float *depth[PN_MAPS_MAX * LAYERS];
+  const pni_light_block *block;
+  float *depth[PNI_MAPS_MAX * LAYERS];
   int maps, layers, width, height;
   bool sun;
 } atlas;
 
 static atlas read_maps(const stage *s) {
-  const pn_maps *maps = &s->light->maps;
-  atlas a = {.block = &maps->block, .maps = (int)maps->block.maps[0], .layers = maps->layers, .width = maps->depth.width,
-             .height = maps->depth.height, .sun = maps->block.extent[2] > 0.5f};
+  const pni_maps *maps = &s->light->maps;
+  atlas a = {.block = &maps->block,
+             .maps = (int)maps->block.maps[0],
+             .layers = maps->layers,
+             .width = maps->depth.width,
+             .height = maps->depth.height,
+             .sun = maps->block.extent[2] > 0.5f};
   for (int i = 0; i < a.maps * a.layers; i++) a.depth[i] = gl_read_depth(maps->depth.id, i, a.width, a.height);
   return a;
 }
@@ -32,7 +36,9 @@ static void free_maps(atlas *a) {
   for (int i = 0; i < a->maps * a->layers; i++) free(a->depth[i]);
 }
 
-typedef struct { double s, t, w; } place;
+typedef struct {
+  double s, t, w;
+} place;
 
 /* The sample of a texel; false where there is none. */
 static bool sample_of(const atlas *a, int map, int layer, int x, int y, place *out) {
@@ -50,7 +56,7 @@ static bool sample_of(const atlas *a, int map, int layer, int x, int y, place *o
 typedef struct {
   place m;
   double n[3], k, reach, half[2], texel[2];
-  double error;                  /* of s and t */
+  double error;                           /* of s and t */
   double w_most, plane_least, plane_most; /* between which the library's own bounds on errors lie: open */
 } receiver;
 
@@ -58,10 +64,12 @@ typedef struct {
 static receiver receiver_at(const atlas *a, const light_axes *l, vec p, vec n) {
   vec d = sub(p, l->origin);
   double z = dot(d, l->z), scale = l->sun ? 1 : 1 / z, map_error = a->block->range[2];
-  receiver r = {.n = {dot(n, l->u), dot(n, l->v), dot(n, l->z)}, .half = {l->half_u, l->half_v},
+  receiver r = {.n = {dot(n, l->u), dot(n, l->v), dot(n, l->z)},
+                .half = {l->half_u, l->half_v},
                 .texel = {1 / a->block->map_bounds[0][2], 1 / a->block->map_bounds[0][3]}};
   if (l->sun) d = p;
-  r.m = l->sun ? (place){dot(p, l->u), dot(p, l->v), -dot(p, l->z)} : (place){dot(d, l->u) / z, dot(d, l->v) / z, 1 / z};
+  r.m =
+      l->sun ? (place){dot(p, l->u), dot(p, l->v), -dot(p, l->z)} : (place){dot(d, l->u) / z, dot(d, l->v) / z, 1 / z};
   r.k = l->sun ? r.n[2] : dot(n, d);
   r.reach = l->sun ? 1 : length(d);
   r.error = 2e-6 * scale * (1 + fabs(r.m.s) + fabs(r.m.t));
@@ -76,7 +84,8 @@ static int hides(const receiver *r, const place *q, bool crease, double cell) {
   double ds = q->s - r->m.s, dt = q->t - r->m.t, dw = q->w - r->m.w, front = r->n[0] * ds + r->n[1] * dt - r->k * dw;
   double rise = crease ? fmin(fmax(fabs(ds), fabs(dt)), cell) : 0, lever = fabs(ds) + fabs(dt) + r->reach * fabs(dw);
   /* Whether the rise comes on top of the error or instead of it is left open. */
-  double least = fmax(r->plane_least, rise), most = r->plane_most + 1e-5 * lever + rise, rounding = 1e-6 * (1 + r->reach);
+  double least = fmax(r->plane_least, rise), most = r->plane_most + 1e-5 * lever + rise,
+         rounding = 1e-6 * (1 + r->reach);
   if (dw < -1e-6 || front < least - rounding) return NO;
   return dw > r->w_most + 1e-6 && front > most + rounding ? YES : MAYBE;
 }
@@ -96,7 +105,9 @@ static void sample_place(const field *f, int i, int j, double at[2]) {
 
 static int first_of(const field *f, double x) { return (int)fmin(fmax(floor(x * f->grid) - 1, 0), f->grid); }
 
-typedef struct { double low[2], high[2]; } box;
+typedef struct {
+  double low[2], high[2];
+} box;
 
 /* open: by how much an edge may be wrong. */
 static void cover_box(field *f, const box *b, double open, int how) {
@@ -144,7 +155,10 @@ static double open_at(const receiver *r, double dw) {
   return (r->error + 1e-6 * (r->half[0] + r->half[1])) / (dw * half) + 1e-6;
 }
 
-typedef struct { bool edges; primitive primitive; } shape;
+typedef struct {
+  bool edges;
+  primitive primitive;
+} shape;
 
 static void add_patch(const atlas *a, const receiver *r, int map, int layer, int x, int y, field *f) {
   place q;
@@ -162,7 +176,10 @@ static void add_patch(const atlas *a, const receiver *r, int map, int layer, int
 }
 
 /* One side of a quad: how many of its two corners hide, and 1 over their mean dw; 0 where none does. */
-typedef struct { int count; double inverse; } side;
+typedef struct {
+  int count;
+  double inverse;
+} side;
 
 static side side_of(const int hide[4], const double dw[4], const int corners[2]) {
   side s = {0};
@@ -256,16 +273,17 @@ static void cover_all(const atlas *a, const receiver *r, const shape *how, field
     for (int layer = 0; layer < a->layers; layer++)
       for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++) {
-          if (how->primitive == PATCH)
-            add_patch(a, r, map, layer, x, y, f);
-          else
-            add_quad(a, r, map, layer, x, y, how, f);
+          if (how->primitive == PATCH) add_patch(a, r, map, layer, x, y, f);
+          else add_quad(a, r, map, layer, x, y, how, f);
         }
 }
 
 /* ---- comparing ---- */
 
-typedef struct { int compared, hidden, open, outside; double worst; } tally;
+typedef struct {
+  int compared, hidden, open, outside;
+  double worst;
+} tally;
 
 /* The point that the stored depth says, on the pixel's line through the exact one. */
 static vec stored_point(const view *v, int pixel) {
@@ -302,13 +320,12 @@ static void make_scene(uint64_t *seed, soup *casters, soup *seen) {
   if (random_bits(seed) & 1) soup_patch(casters, v3(0, 0, 0), tilt, v3(0, 0, 2));
   int count = 1 + (int)random_in(seed, 0, 5);
   for (int i = 0; i < count; i++) {
-    vec a = random_direction(seed), b = unit(cross(a, random_direction(seed))), centre = add(v3(0, 0.8, 0), random_point(seed, 0.5));
+    vec a = random_direction(seed), b = unit(cross(a, random_direction(seed))),
+        centre = add(v3(0, 0.8, 0), random_point(seed, 0.5));
     for (int k = 0; k < 2; k++) {
       soup *s = k ? casters : seen;
-      if (i & 1)
-        soup_block(s, centre, mul(0.3, a), mul(0.2, b), mul(0.15, cross(a, b)));
-      else
-        soup_patch(s, centre, mul(0.5, a), mul(0.2, b));
+      if (i & 1) soup_block(s, centre, mul(0.3, a), mul(0.2, b), mul(0.15, cross(a, b)));
+      else soup_patch(s, centre, mul(0.5, a), mul(0.2, b));
     }
   }
 }
@@ -329,8 +346,15 @@ static void look(stage *s, const char *spec, const shape *how, int code, int rou
   uint64_t seed = 500 + (uint64_t)round;
   soup casters = {0}, seen = {0};
   make_scene(&seed, &casters, &seen);
-  camera k = {.width = PIXELS, .height = PIXELS, .eye = v3(0.8, 3, 1.5), .target = v3(0, 0.3, 0), .up = v3(0, 1, 0), .orthographic = true,
-              .half_height = 1.3, .near = 0.5, .far = 8};
+  camera k = {.width = PIXELS,
+              .height = PIXELS,
+              .eye = v3(0.8, 3, 1.5),
+              .target = v3(0, 0.3, 0),
+              .up = v3(0, 1, 0),
+              .orthographic = true,
+              .half_height = 1.3,
+              .near = 0.5,
+              .far = 8};
   view v;
   view_draw(&v, &k, &seen);
   pn_casters_destroy(&s->casters);
@@ -353,7 +377,9 @@ static void look(stage *s, const char *spec, const shape *how, int code, int rou
     cover_all(&a, &r, how, &f);
     compare_pixel(&r, &f, visibility[i], t);
   }
-  if (t->outside > outside) print_message("%s, round %d: %d of %d pixels outside, by up to %g\n", spec, round, t->outside - outside, PIXELS * PIXELS, t->worst);
+  if (t->outside > outside)
+    print_message("%s, round %d: %d of %d pixels outside, by up to %g\n", spec, round, t->outside - outside,
+                  PIXELS * PIXELS, t->worst);
   free_maps(&a);
   free(visibility);
   view_free(&v);
@@ -361,16 +387,19 @@ static void look(stage *s, const char *spec, const shape *how, int code, int rou
   soup_free(&seen);
 }
 
-static void check(const char *primitive_name, primitive p, bool edges, const char *samples, int code, const char *maps, int rounds) {
+static void check(const char *primitive_name, primitive p, bool edges, const char *samples, int code, const char *maps,
+                  int rounds) {
   char spec[128];
   tally t = {0};
   shape how = {edges, p};
-  snprintf(spec, sizeof spec, "bitmask:merge=0,hierarchy=none,primitive=%s,edges=%s,samples=%s,maps=%s", primitive_name, edges ? "on" : "off", samples, maps);
+  snprintf(spec, sizeof spec, "bitmask:merge=0,hierarchy=none,primitive=%s,edges=%s,samples=%s,maps=%s", primitive_name,
+           edges ? "on" : "off", samples, maps);
   stage s;
   stage_open(&s);
   for (int round = 0; round < rounds; round++) look(&s, spec, &how, code, round, &t);
   stage_close(&s);
-  print_message("%s: %d pixels, %d in shadow, %.3f samples open a pixel, %d outside\n", spec, t.compared, t.hidden, (double)t.open / t.compared, t.outside);
+  print_message("%s: %d pixels, %d in shadow, %.3f samples open a pixel, %d outside\n", spec, t.compared, t.hidden,
+                (double)t.open / t.compared, t.outside);
   assert_true(t.compared > 64 * rounds && t.hidden > t.compared / 20);
   assert_true(t.open < 0.02 * code * code * t.compared); /* else the comparison says little */
   assert_int_equal(t.outside, 0);
@@ -397,6 +426,7 @@ static void test_exact_quads(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_patches), cmocka_unit_test(test_quads), cmocka_unit_test(test_exact_quads)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_patches), cmocka_unit_test(test_quads),
+                                     cmocka_unit_test(test_exact_quads)};
   return GL_RUN("searches against every texel", tests);
 }

@@ -13,7 +13,9 @@
 
 /* ---- the list of programs ---- */
 
-typedef struct { char *vertex, *fragment, *more, *defines; } program_key;
+typedef struct {
+  char *vertex, *fragment, *more, *defines;
+} program_key;
 static program_key *keys;
 static int key_count;
 
@@ -31,24 +33,27 @@ static void add_key(const char *vertex, const char *fragment, const char *more, 
 static const char *const screen = "shaders/screen.vert.glsl";
 
 static void add_gathering(const char *shader, const char *own, int normals, int mask, int upsample, int debug) {
-  char defines[PN_TECHNIQUE_DEFINES + 128];
-  snprintf(defines, sizeof defines, "%sPN_NORMALS %d\nPN_MASK %d\nPN_UPSAMPLE %d\nPN_DEBUG %d\n", own, normals, mask, upsample, debug);
+  char defines[PNI_TECHNIQUE_DEFINES + 128];
+  snprintf(defines, sizeof defines, "%sPN_NORMALS %d\nPN_MASK %d\nPN_UPSAMPLE %d\nPN_DEBUG %d\n", own, normals, mask,
+           upsample, debug);
   add_key(screen, "search/visibility.glsl", shader, defines);
 }
 
 /* One set of a technique's defines: with every kind of receiver for the default one; the kinds do not look at the technique's defines. */
-static void add_variant(const pn_technique_class *c, const char *own, bool full) {
+static void add_variant(const pni_technique_class *c, const char *own, bool full) {
   for (int i = 0; i < 40; i++) {
     int normals = i % 5, mask = i / 5 & 1, upsample = i / 10 & 1, debug = i / 20;
     if (debug && (upsample || !c->searches)) continue;
     if (full || i % 20 == 0) add_gathering(c->shader, own, normals, mask, upsample, debug);
   }
-  char defines[PN_TECHNIQUE_DEFINES + 32];
+  char defines[PNI_TECHNIQUE_DEFINES + 32];
   snprintf(defines, sizeof defines, "PN_LIGHTS %d\n%s", PN_FORWARD_LIGHTS_MAX, own);
   add_key("", "shaders/forward.glsl", c->shader, defines);
 }
 
-static int value_count(const pn_parameter *p) { return p->type == PN_CHOICE || p->type == PN_BOOL ? (int)p->most + 1 : 3; }
+static int value_count(const pn_parameter *p) {
+  return p->type == PN_CHOICE || p->type == PN_BOOL ? (int)p->most + 1 : 3;
+}
 
 static double value_at(const pn_parameter *p, int i) {
   if (p->type == PN_CHOICE || p->type == PN_BOOL) return i;
@@ -56,18 +61,18 @@ static double value_at(const pn_parameter *p, int i) {
 }
 
 /* Whatever its parameters can be: every choice, and the ends of every range. */
-static void add_technique(const pn_technique_class *c) {
+static void add_technique(const pni_technique_class *c) {
   enum { VARIANTS = 1024 };
-  static char seen[VARIANTS][PN_TECHNIQUE_DEFINES];
+  static char seen[VARIANTS][PNI_TECHNIQUE_DEFINES];
   const pn_technique *t = &c->table;
-  int count = 1, place[PN_PARAMETERS_MAX] = {0}, at = 0;
-  double values[PN_PARAMETERS_MAX] = {0};
+  int count = 1, place[PNI_PARAMETERS_MAX] = {0}, at = 0;
+  double values[PNI_PARAMETERS_MAX] = {0};
   for (int i = 0; i < t->parameter_count; i++) values[i] = t->parameters[i].initial;
-  pn_technique_defines(c, values, seen[0]);
+  pni_technique_defines(c, values, seen[0]);
   add_variant(c, seen[0], true);
   while (at < t->parameter_count) {
     for (int i = 0; i < t->parameter_count; i++) values[i] = value_at(&t->parameters[i], place[i]);
-    pn_technique_defines(c, values, seen[count]);
+    pni_technique_defines(c, values, seen[count]);
     int known = 0;
     while (strcmp(seen[known], seen[count])) known++;
     if (known == count) {
@@ -131,7 +136,7 @@ static void add_others(void) {
 static void list_programs(void) {
   if (key_count) return;
   for (int i = 0; i < pn_technique_count(); i++) {
-    const pn_technique_class *c = pn_technique_class_of(pn_technique_at(i));
+    const pni_technique_class *c = pni_technique_class_of(pn_technique_at(i));
     if (c->shader) add_technique(c);
   }
   add_others();
@@ -149,10 +154,10 @@ static const char *host_main(const program_key *key) {
 }
 
 static char *text_of(const char *path, const char *more, const char *defines) {
-  pn_gpu none = {0}; /* the embedded sources, the C library's memory */
+  pni_gpu none = {0}; /* the embedded sources, the C library's memory */
   const char *paths[] = {path, *more ? more : NULL, NULL};
   char *text = NULL;
-  assert_ok(pn_shader_text(&none, paths, defines, &text));
+  assert_ok(pni_shader_text(&none, paths, defines, &text));
   return text;
 }
 
@@ -167,7 +172,8 @@ static void write_shader(const char *name, const char *version, const char *text
   snprintf(path, sizeof path, "%s/%s", directory, name);
   FILE *file = fopen(path, "w");
   assert_non_null(file);
-  fprintf(file, "#version %s\n%s%s%s", version, strcmp(version, "300 es") ? "" : "precision highp float;\n", text, rest);
+  fprintf(file, "#version %s\n%s%s%s", version, strcmp(version, "300 es") ? "" : "precision highp float;\n", text,
+          rest);
   fclose(file);
   fprintf(list, "%s\n", path);
 }
@@ -218,8 +224,8 @@ static void test_validator(void **state) {
 static void test_every_file_is_used(void **state) {
   (void)state;
   list_programs();
-  for (int f = 0; f < pn_embedded_shader_count; f++) {
-    const char *body = pn_embedded_shaders[f].text, *end;
+  for (int f = 0; f < pni_embedded_shader_count; f++) {
+    const char *body = pni_embedded_shaders[f].text, *end;
     while (!strncmp(body, "#include", 8) || *body == '\n') body = strchr(body, '\n') + 1;
     end = strstr(body, "#include"); /* up to where another file would be put in */
     size_t length = end ? (size_t)(end - body) : strlen(body);
@@ -228,12 +234,13 @@ static void test_every_file_is_used(void **state) {
     for (int i = 0; i < key_count && !used; i++)
       for (int part = 0; part < 2 && !used; part++) {
         if (part == 0 && !*keys[i].vertex) continue;
-        char *text = part ? text_of(keys[i].fragment, keys[i].more, keys[i].defines) : text_of(keys[i].vertex, "", keys[i].defines);
+        char *text = part ? text_of(keys[i].fragment, keys[i].more, keys[i].defines)
+                          : text_of(keys[i].vertex, "", keys[i].defines);
         used = strstr(text, start) != NULL;
         free(text);
       }
     free(start);
-    if (!used) fail_msg("%s is in no program of this test's list", pn_embedded_shaders[f].path);
+    if (!used) fail_msg("%s is in no program of this test's list", pni_embedded_shaders[f].path);
   }
 }
 
@@ -252,7 +259,8 @@ static void test_compiled_programs_are_listed(void **state) {
   list_programs();
   soup patch = {0};
   soup_patch(&patch, v3(0, 0, 0), v3(1, 0, 0), v3(0, 0, 1));
-  camera k = {.width = 8, .height = 8, .eye = v3(0, 2, 1), .up = v3(0, 1, 0), .half_height = 0.5, .near = 0.1, .far = 9};
+  camera k = {
+      .width = 8, .height = 8, .eye = v3(0, 2, 1), .up = v3(0, 1, 0), .half_height = 0.5, .near = 0.1, .far = 9};
   view v;
   stage s;
   view_draw(&v, &k, &patch);
@@ -271,7 +279,7 @@ static void test_compiled_programs_are_listed(void **state) {
       assert_ok(pn_prepare(s.context, name));
     }
   int count = 0;
-  for (const pn_program *p = s.context->gpu.programs; p; p = p->next, count++)
+  for (const pni_program *p = s.context->gpu.programs; p; p = p->next, count++)
     if (!in_list(p->key)) fail_msg("a program of this test's list is missing: %s", p->key);
   assert_true(count > 20);
   stage_close(&s);
@@ -282,10 +290,11 @@ static void test_compiled_programs_are_listed(void **state) {
 /* What ES 3.00 and WebGL 2 have not; geometry shaders have no place in a program's key. */
 static void test_discipline(void **state) {
   (void)state;
-  static const char *const words[] = {"samplerBuffer", "EmitVertex", "gl_Layer", "#extension", "#version", "double ", "imageLoad", "sampler1D"};
-  for (int f = 0; f < pn_embedded_shader_count; f++)
+  static const char *const words[] = {"samplerBuffer", "EmitVertex", "gl_Layer",  "#extension",
+                                      "#version",      "double ",    "imageLoad", "sampler1D"};
+  for (int f = 0; f < pni_embedded_shader_count; f++)
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-      if (strstr(pn_embedded_shaders[f].text, words[i])) fail_msg("%s has %s", pn_embedded_shaders[f].path, words[i]);
+      if (strstr(pni_embedded_shaders[f].text, words[i])) fail_msg("%s has %s", pni_embedded_shaders[f].path, words[i]);
 }
 
 int main(void) {

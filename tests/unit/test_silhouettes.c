@@ -10,7 +10,7 @@
 typedef struct {
   pn_context *context;
   pn_casters *casters;
-  pn_gpu *gpu;
+  pni_gpu *gpu;
 } bench;
 
 static void open_bench(bench *b) {
@@ -19,14 +19,14 @@ static void open_bench(bench *b) {
   b->gpu = &b->context->gpu;
 }
 
-static float *gpu_sides(bench *b, pn_mesh_data *mesh, const pn_matrix *light_from_object, bool sun) {
-  pn_mesh_edges *edges;
-  pn_enter(b->context);
-  assert_ok(pn_mesh_edges_get(b->gpu, mesh, &edges));
+static float *gpu_sides(bench *b, pni_mesh_data *mesh, const pni_matrix *light_from_object, bool sun) {
+  pni_mesh_edges *edges;
+  pni_enter(b->context);
+  assert_ok(pni_mesh_edges_get(b->gpu, mesh, &edges));
   assert_non_null(edges);
-  assert_ok(pn_silhouettes_draw(b->gpu, edges, light_from_object, sun, 0.01f));
+  assert_ok(pni_silhouettes_draw(b->gpu, edges, light_from_object, sun, 0.01f));
   float *sides = gl_read_texture(edges->sides.id, 0, -1, edges->sides.width, edges->sides.height, 1);
-  assert_ok(pn_leave(b->context, PN_OK));
+  assert_ok(pni_leave(b->context, PN_OK));
   return sides;
 }
 
@@ -42,14 +42,15 @@ static double triple(const float *a, const float *b, const float *c, const doubl
 
 /* By the definition: one face looks at the light, the other away. Faces seen almost from their edge are left out, and
  * so are edges of one face, which are silhouettes in any case. For edges of consistently wound faces only. */
-static void check_definition(const pn_edge_list *list, const float *points, const float *sides) {
+static void check_definition(const pni_edge_list *list, const float *points, const float *sides) {
   const double light[3] = {0, 0, 0};
   size_t checked = 0;
   for (size_t i = 0; i < list->count; i++) {
-    const pn_edge *e = &list->edges[i];
+    const pni_edge *e = &list->edges[i];
     if (e->opposite[0] == e->opposite[1]) continue;
     const float *a = points + 3 * e->ends[0], *b = points + 3 * e->ends[1];
-    double first = triple(a, b, points + 3 * e->opposite[0], light), second = triple(b, a, points + 3 * e->opposite[1], light);
+    double first = triple(a, b, points + 3 * e->opposite[0], light),
+           second = triple(b, a, points + 3 * e->opposite[1], light);
     double size = 0;
     for (int k = 0; k < 3; k++) size = fmax(size, fmax(fabs(a[k]), fabs(b[k])));
     double edge = fabs(a[0] - b[0]) + fabs(a[1] - b[1]) + fabs(a[2] - b[2]);
@@ -61,17 +62,18 @@ static void check_definition(const pn_edge_list *list, const float *points, cons
 }
 
 /* One mesh in one pose from one light. */
-static size_t compare(bench *b, pn_mesh_data *mesh, const float *positions, const pn_edge_list *list, pn_matrix matrix, bool sun) {
+static size_t compare(bench *b, pni_mesh_data *mesh, const float *positions, const pni_edge_list *list,
+                      pni_matrix matrix, bool sun) {
   float m[16], *points = malloc(list->vertices * 12);
-  pn_matrix_to_floats(&matrix, m);
-  for (size_t v = 0; v < list->vertices; v++) pn_silhouette_point(m, positions + 3 * v, points + 3 * v);
+  pni_matrix_to_floats(&matrix, m);
+  for (size_t v = 0; v < list->vertices; v++) pni_silhouette_point(m, positions + 3 * v, points + 3 * v);
   float *sides = gpu_sides(b, mesh, &matrix, sun);
   size_t differ = 0, silhouettes = 0;
   for (size_t i = 0; i < list->count; i++) {
-    pn_side side = pn_silhouette_side(&list->edges[i], points, sun);
-    float want = side == PN_SIDE_LEFT ? 1.0f : side == PN_SIDE_RIGHT ? 0.5f : 0.0f;
+    pni_side side = pni_silhouette_side(&list->edges[i], points, sun);
+    float want = side == PNI_SIDE_LEFT ? 1.0f : side == PNI_SIDE_RIGHT ? 0.5f : 0.0f;
     differ += fabsf(sides[i] - want) > 0.01f;
-    silhouettes += side != PN_SIDE_NONE;
+    silhouettes += side != PNI_SIDE_NONE;
   }
   assert_int_equal(differ, 0);
   if (!sun) check_definition(list, points, sides);
@@ -81,9 +83,9 @@ static size_t compare(bench *b, pn_mesh_data *mesh, const float *positions, cons
 }
 
 /* A turn, a stretch, and a distance before the light. */
-static pn_matrix pose(uint64_t *seed, double size, bool mirrored) {
+static pni_matrix pose(uint64_t *seed, double size, bool mirrored) {
   vec x = random_direction(seed), y = unit(cross(x, random_direction(seed))), z = cross(x, y);
-  pn_matrix m = pn_matrix_identity();
+  pni_matrix m = pni_matrix_identity();
   const vec axes[3] = {mul(random_in(seed, 0.5, 2), x), y, mul(mirrored ? -1 : 1, z)};
   for (int c = 0; c < 3; c++) {
     m.m[4 * c] = axes[c].x;
@@ -102,10 +104,13 @@ static double extent(const float *positions, size_t vertices) {
   return size;
 }
 
-static pn_mesh_data *add_mesh(bench *b, const float *positions, size_t vertices, const uint32_t *indices, size_t count, pn_mesh *mesh) {
-  pn_mesh_desc desc = {.positions = {.data = positions, .count = vertices}, .indices = {.data = indices, .count = count}, .index_bytes = 4};
+static pni_mesh_data *add_mesh(bench *b, const float *positions, size_t vertices, const uint32_t *indices, size_t count,
+                               pn_mesh *mesh) {
+  pn_mesh_desc desc = {.positions = {.data = positions, .count = vertices},
+                       .indices = {.data = indices, .count = count},
+                       .index_bytes = 4};
   assert_ok(pn_mesh_add(b->casters, &desc, mesh));
-  return pn_find_mesh(b->casters, mesh->id);
+  return pni_find_mesh(b->casters, mesh->id);
 }
 
 static void test_models(void **state) {
@@ -119,17 +124,18 @@ static void test_models(void **state) {
     read++;
     bench b;
     pn_mesh mesh;
-    pn_edge_list list;
+    pni_edge_list list;
     uint64_t seed = 7;
     open_bench(&b);
-    pn_mesh_data *data = add_mesh(&b, m.positions, m.vertices, m.indices, m.index_count, &mesh);
-    assert_ok(pn_edges_find(b.gpu, m.positions, m.vertices, m.indices, m.index_count, &list));
+    pni_mesh_data *data = add_mesh(&b, m.positions, m.vertices, m.indices, m.index_count, &mesh);
+    assert_ok(pni_edges_find(b.gpu, m.positions, m.vertices, m.indices, m.index_count, &list));
     double size = extent(m.positions, m.vertices);
     size_t found = 0;
     for (int k = 0; k < 4; k++) found += compare(&b, data, m.positions, &list, pose(&seed, size, k == 2), k == 3);
-    print_message("%s: %zu triangles, %zu edges, %zu silhouettes in four views\n", model_name(i), m.index_count / 3, list.count, found);
+    print_message("%s: %zu triangles, %zu edges, %zu silhouettes in four views\n", model_name(i), m.index_count / 3,
+                  list.count, found);
     assert_true(found > 0);
-    pn_edges_free(b.gpu, &list);
+    pni_edges_free(b.gpu, &list);
     pn_context_destroy(&b.context);
     model_free(&m);
   }
@@ -165,7 +171,7 @@ static void test_deforming(void **state) {
   static uint32_t indices[INDICES];
   bench b;
   pn_mesh mesh, hosts;
-  pn_edge_list list;
+  pni_edge_list list;
   GLuint buffer;
   uint64_t seed = 3;
   size_t most = 0;
@@ -173,19 +179,21 @@ static void test_deforming(void **state) {
   wave(positions, 3, 0);
   wave(spread + 2, 5, 0);
   grid_indices(indices);
-  pn_mesh_data *data = add_mesh(&b, positions, VERTICES, indices, INDICES, &mesh);
+  pni_mesh_data *data = add_mesh(&b, positions, VERTICES, indices, INDICES, &mesh);
   glGenBuffers(1, &buffer);
   glBindBuffer(GL_ARRAY_BUFFER, buffer);
   glBufferData(GL_ARRAY_BUFFER, sizeof spread, spread, GL_STREAM_DRAW);
   pn_mesh_desc desc = {.positions = {.buffer = buffer, .offset = 8, .stride = 20, .count = VERTICES},
-                       .indices = {.data = indices, .count = INDICES}, .index_bytes = 4,
-                       .bounds_min = {-1, -1, -1}, .bounds_max = {1, 1, 1}};
+                       .indices = {.data = indices, .count = INDICES},
+                       .index_bytes = 4,
+                       .bounds_min = {-1, -1, -1},
+                       .bounds_max = {1, 1, 1}};
   assert_ok(pn_mesh_add(b.casters, &desc, &hosts));
-  data = pn_find_mesh(b.casters, mesh.id);
-  assert_ok(pn_edges_find(b.gpu, positions, VERTICES, indices, INDICES, &list));
+  data = pni_find_mesh(b.casters, mesh.id);
+  assert_ok(pni_edges_find(b.gpu, positions, VERTICES, indices, INDICES, &list));
   assert_int_equal(list.open, 4 * (GRID - 1));
   for (int k = 0; k < 6; k++) {
-    pn_matrix at = pose(&seed, 1, k == 4);
+    pni_matrix at = pose(&seed, 1, k == 4);
     pn_span span = {.data = positions, .count = VERTICES};
     wave(positions, 3, 0.7 * k);
     wave(spread + 2, 5, 0.7 * k);
@@ -194,13 +202,13 @@ static void test_deforming(void **state) {
     glBufferSubData(GL_ARRAY_BUFFER, 0, sizeof spread, spread);
     assert_ok(pn_mesh_moved(b.casters, hosts, NULL, NULL));
     size_t found = compare(&b, data, positions, &list, at, k & 1);
-    assert_int_equal(compare(&b, pn_find_mesh(b.casters, hosts.id), positions, &list, at, k & 1), found);
+    assert_int_equal(compare(&b, pni_find_mesh(b.casters, hosts.id), positions, &list, at, k & 1), found);
     assert_true(found >= 4 * (GRID - 1)); /* its border, and folds */
     most = found > most ? found : most;
   }
   assert_true(most > 6 * (GRID - 1));
   glDeleteBuffers(1, &buffer);
-  pn_edges_free(b.gpu, &list);
+  pni_edges_free(b.gpu, &list);
   pn_context_destroy(&b.context);
 }
 
@@ -218,26 +226,27 @@ static void test_winding(void **state) {
   }
   bench b;
   pn_mesh first, second;
-  pn_edge_list lists[2];
+  pni_edge_list lists[2];
   open_bench(&b);
   add_mesh(&b, positions, VERTICES, indices, INDICES, &first);
   add_mesh(&b, positions, VERTICES, turned, INDICES, &second);
-  assert_ok(pn_edges_find(b.gpu, positions, VERTICES, indices, INDICES, &lists[0]));
-  assert_ok(pn_edges_find(b.gpu, positions, VERTICES, turned, INDICES, &lists[1]));
+  assert_ok(pni_edges_find(b.gpu, positions, VERTICES, indices, INDICES, &lists[0]));
+  assert_ok(pni_edges_find(b.gpu, positions, VERTICES, turned, INDICES, &lists[1]));
   assert_true(lists[1].opposed > 100 && lists[0].opposed == 0);
   assert_int_equal(lists[0].count, lists[1].count);
-  pn_matrix at = pose(&seed, 1, false);
-  float *a = gpu_sides(&b, pn_find_mesh(b.casters, first.id), &at, false);
-  float *c = gpu_sides(&b, pn_find_mesh(b.casters, second.id), &at, false);
+  pni_matrix at = pose(&seed, 1, false);
+  float *a = gpu_sides(&b, pni_find_mesh(b.casters, first.id), &at, false);
+  float *c = gpu_sides(&b, pni_find_mesh(b.casters, second.id), &at, false);
   assert_memory_equal(a, c, lists[0].count * sizeof *a);
   free(a);
   free(c);
-  pn_edges_free(b.gpu, &lists[0]);
-  pn_edges_free(b.gpu, &lists[1]);
+  pni_edges_free(b.gpu, &lists[0]);
+  pni_edges_free(b.gpu, &lists[1]);
   pn_context_destroy(&b.context);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_models), cmocka_unit_test(test_deforming), cmocka_unit_test(test_winding)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_models), cmocka_unit_test(test_deforming),
+                                     cmocka_unit_test(test_winding)};
   return GL_RUN("silhouettes", tests);
 }

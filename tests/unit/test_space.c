@@ -19,32 +19,32 @@ static void put(vec a, float out[3]) {
 static vec get(const double a[3]) { return v3(a[0], a[1], a[2]); }
 
 /* A light somewhere, turned somehow. */
-static pn_frame random_frame(uint64_t *seed, bool sun) {
-  pn_frame f = {.sun = sun};
+static pni_frame random_frame(uint64_t *seed, bool sun) {
+  pni_frame f = {.sun = sun};
   float z[3], u[3];
   do {
     put(random_direction(seed), z);
     put(random_direction(seed), u);
-  } while (!pn_frame_axes(z, u, &f));
+  } while (!pni_frame_axes(z, u, &f));
   for (int i = 0; i < 3; i++) f.origin[i] = sun ? 0 : random_in(seed, -5, 5);
   for (int i = 0; i < 2; i++) f.extent[i] = random_in(seed, 0.1, 2);
   return f;
 }
 
 /* From the light's frame to the scene, without the matrix. */
-static vec in_scene(const pn_frame *f, vec p) {
+static vec in_scene(const pni_frame *f, vec p) {
   return add(get(f->origin), add(mul(p.x, get(f->u)), add(mul(p.y, get(f->v)), mul(p.z, get(f->z)))));
 }
 
-static vec in_light(const pn_frame *f, vec scene) {
+static vec in_light(const pni_frame *f, vec scene) {
   vec d = sub(scene, get(f->origin));
   return v3(dot(d, get(f->u)), dot(d, get(f->v)), dot(d, get(f->z)));
 }
 
-static void map_of(const pn_frame *f, vec scene, double m[3]) {
+static void map_of(const pni_frame *f, vec scene, double m[3]) {
   vec p = in_light(f, scene);
   const double values[3] = {p.x, p.y, p.z};
-  pn_map_point(values, f->sun, m);
+  pni_map_point(values, f->sun, m);
 }
 
 static void close_to(double a, double b, double size) { assert_true(fabs(a - b) <= tiny * size); }
@@ -64,7 +64,8 @@ static void test_light_frame(void **state) {
     assert_int_equal(pn_light_frame(direction, upwards, out[0], out[1], out[2]), PN_OK);
     vec u = unit(across), v = cross(u, unit(v3(direction[0], direction[1], direction[2])));
     const vec want[3] = {unit(v3(direction[0], direction[1], direction[2])), u, v};
-    for (int k = 0; k < 3; k++) /* the outputs are floats: half a unit in the last place of 1, and the double arithmetic */
+    for (int k = 0; k < 3;
+         k++) /* the outputs are floats: half a unit in the last place of 1, and the double arithmetic */
       assert_true(length(sub(v3(out[k][0], out[k][1], out[k][2]), want[k])) < 2 * FLT_EPSILON);
   }
 }
@@ -78,7 +79,8 @@ static void assert_frame(const float direction[3], const float *up, vec u, vec v
 
 static void test_parallel_up(void **state) {
   (void)state;
-  const float down[3] = {0, -2, 0}, up[3] = {0, 1, 0}, back[3] = {0, 0, -3}, forth[3] = {0, 0, 1}, nothing[3] = {0, 0, 0};
+  const float down[3] = {0, -2, 0}, up[3] = {0, 1, 0}, back[3] = {0, 0, -3}, forth[3] = {0, 0, 1},
+              nothing[3] = {0, 0, 0};
   /* Down: up becomes (0, 0, -1); u = (0, -1, 0) x (0, 0, -1) = (1, 0, 0), v = u x z = (1, 0, 0) x (0, -1, 0) = (0, 0, -1). */
   assert_frame(down, up, v3(1, 0, 0), v3(0, 0, -1));
   assert_frame(up, down, v3(-1, 0, 0), v3(0, 0, -1));
@@ -92,19 +94,20 @@ static void test_parallel_up(void **state) {
 
 static void test_bad_frames(void **state) {
   (void)state;
-  const float zero[3] = {0, 0, 0}, nan3[3] = {0, NAN, 0}, inf3[3] = {INFINITY, 0, 0}, x[3] = {1, 0, 0}, x2[3] = {-2, 0, 0};
+  const float zero[3] = {0, 0, 0}, nan3[3] = {0, NAN, 0}, inf3[3] = {INFINITY, 0, 0}, x[3] = {1, 0, 0},
+              x2[3] = {-2, 0, 0};
   const float up[3] = {0, 1, 0}, skew[3] = {1, 1, 0};
-  pn_frame f;
+  pni_frame f;
   assert_int_equal(pn_light_frame(zero, up, NULL, NULL, NULL), PN_ERROR_ARGUMENT);
   assert_int_equal(pn_light_frame(nan3, up, NULL, NULL, NULL), PN_ERROR_ARGUMENT);
   assert_int_equal(pn_light_frame(inf3, up, NULL, NULL, NULL), PN_ERROR_ARGUMENT);
   assert_int_equal(pn_light_frame(NULL, up, NULL, NULL, NULL), PN_ERROR_ARGUMENT);
-  assert_false(pn_frame_axes(zero, up, &f));
-  assert_false(pn_frame_axes(up, zero, &f));
-  assert_false(pn_frame_axes(x, x2, &f));
-  assert_false(pn_frame_axes(nan3, up, &f));
-  assert_false(pn_frame_axes(up, inf3, &f));
-  assert_true(pn_frame_axes(x, skew, &f)); /* made perpendicular */
+  assert_false(pni_frame_axes(zero, up, &f));
+  assert_false(pni_frame_axes(up, zero, &f));
+  assert_false(pni_frame_axes(x, x2, &f));
+  assert_false(pni_frame_axes(nan3, up, &f));
+  assert_false(pni_frame_axes(up, inf3, &f));
+  assert_true(pni_frame_axes(x, skew, &f)); /* made perpendicular */
   assert_true(length(sub(get(f.u), v3(0, 1, 0))) < tiny);
   assert_true(length(sub(get(f.v), cross(v3(0, 1, 0), v3(1, 0, 0)))) < tiny);
 }
@@ -113,11 +116,11 @@ static void test_light_from_scene(void **state) {
   (void)state;
   uint64_t seed = 2;
   for (int i = 0; i < ROUNDS; i++) {
-    pn_frame f = random_frame(&seed, i & 1);
-    pn_matrix m = pn_light_from_scene(&f);
+    pni_frame f = random_frame(&seed, i & 1);
+    pni_matrix m = pni_light_from_scene(&f);
     vec p = random_point(&seed, 10), scene = in_scene(&f, p);
     double s[3] = {scene.x, scene.y, scene.z}, out[3];
-    pn_matrix_point(&m, s, out);
+    pni_matrix_point(&m, s, out);
     assert_true(length(sub(get(out), p)) < tiny * 100);
   }
 }
@@ -132,16 +135,16 @@ static void test_map_point(void **state) {
   (void)state;
   const double p[3] = {3, -4, 2}, flat[3] = {1.5, -2, 0.5}, sun[3] = {3, -4, -2};
   double m[3];
-  pn_map_point(p, false, m);
+  pni_map_point(p, false, m);
   assert_memory_equal(m, flat, sizeof m);
-  pn_map_point(p, true, m);
+  pni_map_point(p, true, m);
   assert_memory_equal(m, sun, sizeof m);
   uint64_t seed = 3;
   for (int i = 0; i < ROUNDS; i++) {
     vec at = before_light(&seed, i & 1);
     double in[3] = {at.x, at.y, at.z}, out[3];
-    pn_map_point(in, i & 1, m);
-    pn_light_point(m, i & 1, out);
+    pni_map_point(in, i & 1, m);
+    pni_light_point(m, i & 1, out);
     assert_true(length(sub(get(out), at)) <= 8 * DBL_EPSILON * length(at));
   }
 }
@@ -152,13 +155,13 @@ static void test_back_projection(void **state) {
   uint64_t seed = 4;
   for (int i = 0; i < ROUNDS; i++) {
     bool sun = i & 1;
-    pn_frame f = random_frame(&seed, sun);
+    pni_frame f = random_frame(&seed, sun);
     vec r = in_scene(&f, v3(random_in(&seed, -5, 5), random_in(&seed, -5, 5), random_in(&seed, 2, 10)));
     vec q = in_scene(&f, v3(random_in(&seed, -5, 5), random_in(&seed, -5, 5), random_in(&seed, 0.05, 1.5)));
     double mq[3], mr[3], found[2], want[2];
     map_of(&f, q, mq);
     map_of(&f, r, mr);
-    pn_back_project(mq, mr, found);
+    pni_back_project(mq, mr, found);
     vec d = sub(q, r);
     if (sun) {
       want[0] = dot(d, get(f.u)) / -dot(d, get(f.z));
@@ -182,15 +185,15 @@ static void test_plane_front(void **state) {
   int behind = 0, front = 0;
   for (int i = 0; i < ROUNDS; i++) {
     bool sun = i & 1;
-    pn_frame f = random_frame(&seed, sun);
+    pni_frame f = random_frame(&seed, sun);
     vec r = before_light(&seed, sun), q = before_light(&seed, sun), n = random_direction(&seed);
     vec scene_n = sub(in_scene(&f, n), get(f.origin));
     double mq[3], mr[3], normal[3] = {n.x, n.y, n.z}, at[3] = {r.x, r.y, r.z};
     map_of(&f, in_scene(&f, q), mq);
     map_of(&f, in_scene(&f, r), mr);
-    double k = pn_plane_offset(normal, at, sun);
+    double k = pni_plane_offset(normal, at, sun);
     double want = dot(scene_n, sub(in_scene(&f, q), in_scene(&f, r))) * (sun ? 1 : 1 / q.z);
-    double found = pn_plane_front(normal, k, mq, mr);
+    double found = pni_plane_front(normal, k, mq, mr);
     close_to(found, want, 1e4);
     if (fabs(want) > 1e-6) assert_true((found > 0) == (want > 0));
     bool centre_behind = sun ? n.z > 0 : dot(scene_n, sub(get(f.origin), in_scene(&f, r))) < 0;
@@ -206,16 +209,14 @@ static void test_horizon(void **state) {
   uint64_t seed = 6;
   for (int i = 0; i < ROUNDS; i++) {
     bool sun = i & 1;
-    pn_frame f = random_frame(&seed, sun);
+    pni_frame f = random_frame(&seed, sun);
     vec r = before_light(&seed, sun), n = random_direction(&seed);
     double point[2] = {random_in(&seed, -2, 2), random_in(&seed, -2, 2)};
     double normal[3] = {n.x, n.y, n.z}, at[3] = {r.x, r.y, r.z};
     vec scene_n = sub(in_scene(&f, n), get(f.origin)), to;
-    if (sun)
-      to = add(mul(point[0], get(f.u)), sub(mul(point[1], get(f.v)), get(f.z)));
-    else
-      to = sub(in_scene(&f, v3(point[0], point[1], 0)), in_scene(&f, r));
-    close_to(pn_horizon(normal, pn_plane_offset(normal, at, sun), point), dot(scene_n, to), 1e3);
+    if (sun) to = add(mul(point[0], get(f.u)), sub(mul(point[1], get(f.v)), get(f.z)));
+    else to = sub(in_scene(&f, v3(point[0], point[1], 0)), in_scene(&f, r));
+    close_to(pni_horizon(normal, pni_plane_offset(normal, at, sun), point), dot(scene_n, to), 1e3);
   }
 }
 
@@ -226,18 +227,19 @@ static void test_windows(void **state) {
   (void)state;
   uint64_t seed = 7;
   for (int i = 0; i < ROUNDS; i++) {
-    double extent = random_in(&seed, 0.01, 3), w_r = random_in(&seed, 0.1, 1), w = w_r + random_in(&seed, 0.1, 4), point[2];
+    double extent = random_in(&seed, 0.01, 3), w_r = random_in(&seed, 0.1, 1), w = w_r + random_in(&seed, 0.1, 4),
+           point[2];
     double r[3] = {random_in(&seed, -1, 1), random_in(&seed, -1, 1), w_r};
-    double q[3] = {r[0] + pn_search_window(extent, w, w_r), r[1] - pn_search_window(extent, w, w_r), w};
-    pn_back_project(q, r, point);
+    double q[3] = {r[0] + pni_search_window(extent, w, w_r), r[1] - pni_search_window(extent, w, w_r), w};
+    pni_back_project(q, r, point);
     close_to(point[0], extent, 100);
     close_to(point[1], -extent, 100);
-    double reached[3] = {q[0] + pn_penumbra_extent(extent, w, w_r), q[1] - pn_penumbra_extent(extent, w, w_r), w_r};
-    pn_back_project(q, reached, point);
+    double reached[3] = {q[0] + pni_penumbra_extent(extent, w, w_r), q[1] - pni_penumbra_extent(extent, w, w_r), w_r};
+    pni_back_project(q, reached, point);
     close_to(point[0], -extent, 100);
     close_to(point[1], extent, 100);
   }
-  assert_true(pn_search_window(2, 1, 3) == 0 && pn_penumbra_extent(2, 1, 3) == 0);
+  assert_true(pni_search_window(2, 1, 3) == 0 && pni_penumbra_extent(2, 1, 3) == 0);
 }
 
 /* ---- maps ---- */
@@ -247,9 +249,9 @@ static void test_depth(void **state) {
   uint64_t seed = 8;
   for (int i = 0; i < ROUNDS; i++) {
     double w_far = random_in(&seed, -4, 4), w_near = w_far + random_in(&seed, 1e-3, 4), scale[2];
-    pn_depth_scale(w_near, w_far, scale);
-    close_to(scale[0] + scale[1] * PN_DEPTH_MARGIN, w_near, 10);
-    close_to(scale[0] + scale[1] * (1 - PN_DEPTH_MARGIN), w_far, 10);
+    pni_depth_scale(w_near, w_far, scale);
+    close_to(scale[0] + scale[1] * PNI_DEPTH_MARGIN, w_near, 10);
+    close_to(scale[0] + scale[1] * (1 - PNI_DEPTH_MARGIN), w_far, 10);
   }
 }
 
@@ -265,9 +267,9 @@ static void test_clip(void **state) {
     double s0 = random_in(&seed, -3, 3), t0 = random_in(&seed, -3, 3);
     double bounds[4] = {s0, t0, s0 + random_in(&seed, 0.1, 4), t0 + random_in(&seed, 0.1, 4)};
     double w_far = random_in(&seed, -4, 1), w_near = w_far + random_in(&seed, 0.1, 4);
-    pn_matrix clip = pn_clip_from_light(sun, bounds, w_near, w_far, shear);
+    pni_matrix clip = pni_clip_from_light(sun, bounds, w_near, w_far, shear);
     double in[4] = {p.x, p.y, p.z, 1}, out[4], seen[2];
-    pn_matrix_apply(&clip, in, out);
+    pni_matrix_apply(&clip, in, out);
     for (int k = 0; k < 2; k++) {
       seen[k] = sun ? in[k] + shear[k] * p.z : (in[k] - shear[k]) / p.z;
       close_to(out[k] / out[3], 2 * (seen[k] - bounds[k]) / (bounds[2 + k] - bounds[k]) - 1, 1e4);
@@ -280,10 +282,12 @@ static void test_clip(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_light_frame), cmocka_unit_test(test_parallel_up),     cmocka_unit_test(test_bad_frames),
-      cmocka_unit_test(test_light_from_scene), cmocka_unit_test(test_map_point),  cmocka_unit_test(test_back_projection),
-      cmocka_unit_test(test_plane_front), cmocka_unit_test(test_horizon),         cmocka_unit_test(test_windows),
-      cmocka_unit_test(test_depth),       cmocka_unit_test(test_clip),
+      cmocka_unit_test(test_light_frame), cmocka_unit_test(test_parallel_up),
+      cmocka_unit_test(test_bad_frames),  cmocka_unit_test(test_light_from_scene),
+      cmocka_unit_test(test_map_point),   cmocka_unit_test(test_back_projection),
+      cmocka_unit_test(test_plane_front), cmocka_unit_test(test_horizon),
+      cmocka_unit_test(test_windows),     cmocka_unit_test(test_depth),
+      cmocka_unit_test(test_clip),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,14 +13,17 @@ enum { SIDE = 96, COUNT = SIDE * SIDE, INPUTS = 4 };
 /* Rounding unit of float. GLSL allows a quotient an error of 2.5 units in the last place, that is 5 of these. */
 static const double e = 0x1p-24;
 
-typedef struct { float a[4], b[4], n[4], more[4]; } inputs; /* more: extent u, v, two w */
+typedef struct {
+  float a[4], b[4], n[4], more[4];
+} inputs; /* more: extent u, v, two w */
 
 static const char main_text[] =
     "uniform sampler2D input_0, input_1, input_2, input_3; uniform int which; uniform bool sun;\n"
     "layout(location = 0) out vec4 result;\n"
     "void main() {\n"
     "  ivec2 at = ivec2(gl_FragCoord.xy);\n"
-    "  vec3 a = texelFetch(input_0, at, 0).xyz, b = texelFetch(input_1, at, 0).xyz, n = texelFetch(input_2, at, 0).xyz;\n"
+    "  vec3 a = texelFetch(input_0, at, 0).xyz, b = texelFetch(input_1, at, 0).xyz, n = texelFetch(input_2, at, "
+    "0).xyz;\n"
     "  vec4 more = texelFetch(input_3, at, 0);\n"
     "  result = vec4(0.0);\n"
     "  if (which == 0) result.xyz = pn_map_point(a, sun);\n"
@@ -38,8 +41,8 @@ static const char vertex_text[] =
 static GLuint program, textures[INPUTS], target, framebuffer, array;
 
 static const char *space_text(void) {
-  for (int i = 0; i < pn_embedded_shader_count; i++)
-    if (!strcmp(pn_embedded_shaders[i].path, "space/space.glsl")) return pn_embedded_shaders[i].text;
+  for (int i = 0; i < pni_embedded_shader_count; i++)
+    if (!strcmp(pni_embedded_shaders[i].path, "space/space.glsl")) return pni_embedded_shaders[i].text;
   return "";
 }
 
@@ -125,7 +128,7 @@ static void points(int which, bool sun) {
   for (int i = 0; i < COUNT; i++) {
     double a[3], want[3];
     widen(in[i].a, a);
-    (which ? pn_light_point : pn_map_point)(a, sun, want);
+    (which ? pni_light_point : pni_map_point)(a, sun, want);
     for (int k = 0; k < 3; k++) check(out[4 * i + k], want[k], 6 * e * fabs(want[k]));
   }
   free(out);
@@ -147,7 +150,7 @@ static void test_back_project(void **state) {
     double a[3], b[3], want[2];
     widen(in[i].a, a);
     widen(in[i].b, b);
-    pn_back_project(a, b, want);
+    pni_back_project(a, b, want);
     for (int k = 0; k < 2; k++) check(out[4 * i + k], want[k], 8 * e * fabs(want[k]));
   }
   free(out);
@@ -166,11 +169,11 @@ static void test_planes(void **state) {
       widen(in[i].b, b);
       widen(in[i].n, n);
       double size = fabs(n[0] * a[0]) + fabs(n[1] * a[1]) + fabs(n[2] * a[2]);
-      check(offset[4 * i], pn_plane_offset(n, a, sun), sun ? 0 : 4 * e * size);
+      check(offset[4 * i], pni_plane_offset(n, a, sun), sun ? 0 : 4 * e * size);
       size = fabs(n[0] * (a[0] - b[0])) + fabs(n[1] * (a[1] - b[1])) + fabs(k * (a[2] - b[2]));
-      check(front[4 * i], pn_plane_front(n, k, a, b), 5 * e * size);
+      check(front[4 * i], pni_plane_front(n, k, a, b), 5 * e * size);
       size = fabs(n[0] * point[0]) + fabs(n[1] * point[1]) + fabs(k);
-      check(horizon[4 * i], pn_horizon(n, k, point), 4 * e * size);
+      check(horizon[4 * i], pni_horizon(n, k, point), 4 * e * size);
     }
     free(offset);
     free(front);
@@ -187,9 +190,9 @@ static void test_windows(void **state) {
   for (int i = 0; i < COUNT; i++)
     for (int k = 0; k < 2; k++) {
       const float *more = in[i].more;
-      double want = pn_search_window(more[k], more[2], more[3]);
+      double want = pni_search_window(more[k], more[2], more[3]);
       check(window[4 * i + k], want, 3 * e * want);
-      want = pn_penumbra_extent(more[k], more[2], more[3]);
+      want = pni_penumbra_extent(more[k], more[2], more[3]);
       check(extent[4 * i + k], want, 3 * e * want);
     }
   free(window);

@@ -9,7 +9,7 @@
 
 static double value_of(const char *spec, const char *name) {
   const pn_technique *t = NULL;
-  double values[PN_PARAMETERS_MAX];
+  double values[PNI_PARAMETERS_MAX];
   char why[256] = "x";
   if (pn_technique_parse(spec, &t, values, why, sizeof why) != PN_OK) fail_msg("%s: %s", spec, why);
   assert_string_equal(why, "");
@@ -22,24 +22,25 @@ static double value_of(const char *spec, const char *name) {
 /* Refused, with a line that has all the words; technique and values untouched. */
 static void refuse(const char *spec, const char *word, const char *other) {
   const pn_technique *t = NULL;
-  double values[PN_PARAMETERS_MAX];
+  double values[PNI_PARAMETERS_MAX];
   char why[512] = "";
-  for (int i = 0; i < PN_PARAMETERS_MAX; i++) values[i] = -7;
+  for (int i = 0; i < PNI_PARAMETERS_MAX; i++) values[i] = -7;
   assert_int_equal(pn_technique_parse(spec, &t, values, why, sizeof why), PN_ERROR_ARGUMENT);
   assert_null(t);
-  for (int i = 0; i < PN_PARAMETERS_MAX; i++) assert_true(values[i] == -7);
-  if (!strstr(why, word) || !strstr(why, other) || strchr(why, '\n')) fail_msg("%s: '%s' lacks '%s' or '%s'", spec, why, word, other);
+  for (int i = 0; i < PNI_PARAMETERS_MAX; i++) assert_true(values[i] == -7);
+  if (!strstr(why, word) || !strstr(why, other) || strchr(why, '\n'))
+    fail_msg("%s: '%s' lacks '%s' or '%s'", spec, why, word, other);
 }
 
 static void test_defaults(void **state) {
   (void)state;
   for (int i = 0; i < pn_technique_count(); i++) {
     const pn_technique *t = pn_technique_at(i), *found = NULL;
-    double values[PN_PARAMETERS_MAX];
+    double values[PNI_PARAMETERS_MAX];
     assert_int_equal(pn_technique_parse(t->name, &found, values, NULL, 0), PN_OK);
     assert_ptr_equal(found, t);
     assert_ptr_equal(pn_technique_find(t->name), t);
-    assert_true(t->parameter_count <= PN_PARAMETERS_MAX);
+    assert_true(t->parameter_count <= PNI_PARAMETERS_MAX);
     for (int k = 0; k < t->parameter_count; k++) {
       const pn_parameter *p = &t->parameters[k];
       assert_true(values[k] == p->initial && p->least <= p->initial && p->initial <= p->most);
@@ -80,8 +81,10 @@ static void test_bad(void **state) {
   refuse("pcss:", "key=value", "pcss");
   refuse("pcss:samples=3,", "key=value", "pcss");
   refuse("pcss:=3", "''", "samples");
-  static const char *const numbers[] = {"",    "0",    "65",   "-1",  "2.5", "nan", "inf", "0x10", "1e999", "8 ", " 8", "8,5x", "--8",
-                                        "1e",  "1.2.3", "1,5", "8;", "9999999999999999999999999999999999999999999999999999999999999999999999"};
+  static const char *const numbers[] = {
+      "",    "0",    "65",    "-1",  "2.5", "nan",
+      "inf", "0x10", "1e999", "8 ",  " 8",  "8,5x",
+      "--8", "1e",   "1.2.3", "1,5", "8;",  "9999999999999999999999999999999999999999999999999999999999999999999999"};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
     char spec[256] = "pcss:samples=";
     strcat(spec, numbers[i]);
@@ -131,12 +134,12 @@ static void test_set_by_name(void **state) {
   const pn_technique *t = pn_technique_find("pcf");
   double values[2] = {0, 5};
   pn_message message;
-  assert_true(pn_parameter_set(t, "taps", 9, values, &message) && values[1] == 9);
-  assert_false(pn_parameter_set(t, "tap", 9, values, &message));
+  assert_true(pni_parameter_set(t, "taps", 9, values, &message) && values[1] == 9);
+  assert_false(pni_parameter_set(t, "tap", 9, values, &message));
   assert_int_equal(message, PN_MESSAGE_PARAMETER_UNKNOWN);
   static const double bad[] = {0, 65, 2.5, NAN, INFINITY, -1};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-    assert_false(pn_parameter_set(t, "taps", bad[i], values, &message));
+    assert_false(pni_parameter_set(t, "taps", bad[i], values, &message));
     assert_int_equal(message, PN_MESSAGE_PARAMETER_VALUE);
   }
   assert_true(values[1] == 9);
@@ -158,7 +161,8 @@ static void test_word(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_defaults),     cmocka_unit_test(test_good),   cmocka_unit_test(test_bad),
-      cmocka_unit_test(test_short_reason), cmocka_unit_test(test_locale), cmocka_unit_test(test_word), cmocka_unit_test(test_set_by_name),
+      cmocka_unit_test(test_short_reason), cmocka_unit_test(test_locale), cmocka_unit_test(test_word),
+      cmocka_unit_test(test_set_by_name),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,10 +29,10 @@ static void add_clutter(scene *c) {
 /* ---- lists ------------------------------------------------------------------------------------------------------- */
 
 /* The list that the last draw left, of its last side and layer: 8 floats an entry. */
-static float *read_list(pn_pair *pair, int count) {
+static float *read_list(pni_pair *pair, int count) {
   float *out = malloc((size_t)(count ? count : 1) * 8 * sizeof *out);
   for (int half = 0; half < 2; half++) {
-    const pn_texture *t = &pair->work[SSM_LIST + half];
+    const pni_texture *t = &pair->work[SSM_LIST + half];
     float *texels = gl_read_texture(t->id, 0, -1, t->width, t->height, 4);
     for (int i = 0; i < count; i++) memcpy(out + 8 * i + 4 * half, texels + 4 * i, 4 * sizeof *out);
     free(texels);
@@ -40,8 +40,8 @@ static float *read_list(pn_pair *pair, int count) {
   return out;
 }
 
-static int gpu_total(scene *c, pn_pair *pair) {
-  const pn_texture *t = &pair->work[SSM_COUNTS];
+static int gpu_total(scene *c, pni_pair *pair) {
+  const pni_texture *t = &pair->work[SSM_COUNTS];
   GLuint top[4] = {0};
   (void)c;
   glBindTexture(GL_TEXTURE_2D, t->id);
@@ -57,11 +57,11 @@ static void check_lists(const char *spec, int map) {
   scene_open(&c, 2.2);
   pn_light_desc light = light_above(map);
   free(stage_visibility(&c.s, &light, spec));
-  pn_pair *pair = pn_pair_find(&c.s.light->object, &c.s.receiver->object);
+  pni_pair *pair = pni_pair_find(&c.s.light->object, &c.s.receiver->object);
   assert_non_null(pair);
   int count = gpu_total(&c, pair), cpu_count;
   float *gpu = read_list(pair, count), *cpu;
-  pn_visibility_request request = {.gpu = &c.s.context->gpu, .maps = &c.s.light->maps, .pair = pair};
+  pni_visibility_request request = {.gpu = &c.s.context->gpu, .maps = &c.s.light->maps, .pair = pair};
   ssm_list list = {.request = &request, .layer = c.s.light->maps.layers - 1, .share = c.s.light->values[4] / 100};
   assert_ok(ssm_cpu_list(&list, &cpu, &cpu_count));
   print_message("%s, %d: %d and %d patches\n", spec, map, count, cpu_count);
@@ -72,7 +72,7 @@ static void check_lists(const char *spec, int map) {
   assert_int_equal(count, cpu_count);
   assert_true(different <= count / 1000);
   free(gpu);
-  pn_free(&c.s.context->gpu, cpu);
+  pni_free(&c.s.context->gpu, cpu);
   over_ground_close(&c);
 }
 

@@ -20,61 +20,61 @@ static const pn_parameter parameters[COUNT] = {
     [PRIMITIVE] = {"primitive", "",
                    "what texels stand for: rectangles, or quads between texel centres, covered by the paper's "
                    "rectangle or exactly",
-                   "section 4", PN_CHOICE, 0, 2, PN_PRIMITIVE_QUAD, primitives},
+                   "section 4", PN_CHOICE, 0, 2, PNI_PRIMITIVE_QUAD, primitives},
     [MAPS] = {"maps", "", "nearest surface, nearest and farthest, or peeled layers", "section 3.2", PN_CHOICE, 0, 2,
               MAPS_TWO_SIDED, maps},
-    [LAYERS] = {"layers", "", "how many layers are peeled, with maps=layers", "section 3.2", PN_INT, 1, PN_LAYERS_MAX,
+    [LAYERS] = {"layers", "", "how many layers are peeled, with maps=layers", "section 3.2", PN_INT, 1, PNI_LAYERS_MAX,
                 2, NULL},
-    [HIERARCHY] = PN_PARAMETER_HIERARCHY("section 5"),
-    [CAP] = PN_PARAMETER_CAP("section 7"),
-    [MERGE] = PN_PARAMETER_MERGE,
-    [EDGES] = PN_PARAMETER_EDGES,
-    [FOCUS] = PN_PARAMETER_FOCUS,
+    [HIERARCHY] = PNI_PARAMETER_HIERARCHY("section 5"),
+    [CAP] = PNI_PARAMETER_CAP("section 7"),
+    [MERGE] = PNI_PARAMETER_MERGE,
+    [EDGES] = PNI_PARAMETER_EDGES,
+    [FOCUS] = PNI_PARAMETER_FOCUS,
 };
 
 static void preset(int choice, double *values) {
   for (int i = 0; i < COUNT; i++) values[i] = parameters[i].initial;
   values[PRESET] = choice;
   if (choice == 0) { /* fast */
-    values[PRIMITIVE] = PN_PRIMITIVE_PATCH;
+    values[PRIMITIVE] = PNI_PRIMITIVE_PATCH;
     values[MERGE] = 4;
   }
   if (choice == 2) { /* exact */
     values[SAMPLES] = SAMPLES_32;
-    values[PRIMITIVE] = PN_PRIMITIVE_QUAD_EXACT;
+    values[PRIMITIVE] = PNI_PRIMITIVE_QUAD_EXACT;
     values[MAPS] = MAPS_LAYERS;
     values[LAYERS] = 10;
     values[MERGE] = 0.5;
   }
 }
 
-static pn_search_values search_values(const double *values) {
-  return (pn_search_values){.primitive = (pn_primitive)values[PRIMITIVE],
-                            .hierarchy = (pn_hierarchy)values[HIERARCHY],
-                            .gaps = false,
-                            .edges = values[EDGES] != 0,
-                            .merge = values[MERGE],
-                            .merge_index = MERGE,
-                            .cap_index = CAP};
+static pni_search_values search_values(const double *values) {
+  return (pni_search_values){.primitive = (pni_primitive)values[PRIMITIVE],
+                             .hierarchy = (pni_hierarchy)values[HIERARCHY],
+                             .gaps = false,
+                             .edges = values[EDGES] != 0,
+                             .merge = values[MERGE],
+                             .merge_index = MERGE,
+                             .cap_index = CAP};
 }
 
-static void want(const double *values, pn_maps_want *out) {
-  pn_search_values search = search_values(values);
+static void want(const double *values, pni_maps_want *out) {
+  pni_search_values search = search_values(values);
   int kind = (int)values[MAPS];
-  *out = (pn_maps_want){.near_layers = kind == MAPS_LAYERS ? (int)values[LAYERS] : 1,
-                        .farthest = kind == MAPS_TWO_SIDED,
-                        .focus = pn_search_focus(values[FOCUS]),
-                        .range = pn_search_range(&search)};
+  *out = (pni_maps_want){.near_layers = kind == MAPS_LAYERS ? (int)values[LAYERS] : 1,
+                         .farthest = kind == MAPS_TWO_SIDED,
+                         .focus = pni_search_focus(values[FOCUS]),
+                         .range = pni_search_range(&search)};
 }
 
-static void defines(const double *values, char out[PN_TECHNIQUE_DEFINES]) {
+static void defines(const double *values, char out[PNI_TECHNIQUE_DEFINES]) {
   static const int codes[] = {[SAMPLES_16J] = 17, [SAMPLES_8] = 8, [SAMPLES_16] = 16, [SAMPLES_32] = 32};
-  pn_search_values search = search_values(values);
-  int length = pn_search_defines(&search, out, PN_TECHNIQUE_DEFINES);
-  snprintf(out + length, (size_t)(PN_TECHNIQUE_DEFINES - length), "PN_SAMPLES %d\n", codes[(int)values[SAMPLES]]);
+  pni_search_values search = search_values(values);
+  int length = pni_search_defines(&search, out, PNI_TECHNIQUE_DEFINES);
+  snprintf(out + length, (size_t)(PNI_TECHNIQUE_DEFINES - length), "PN_SAMPLES %d\n", codes[(int)values[SAMPLES]]);
 }
 
-const pn_technique_class pn_technique_bitmask = {
+const pni_technique_class pni_technique_bitmask = {
     .table = {.name = "bitmask",
               .title = "bitmask soft shadows",
               .help = "every occluder sets the bits of the light's sample points it hides; occluders fuse correctly",

@@ -1,11 +1,11 @@
 #include "techniques/technique.h"
 
-static void want(const double *values, pn_maps_want *out) {
+static void want(const double *values, pni_maps_want *out) {
   (void)values;
-  *out = (pn_maps_want){.near_layers = 1};
+  *out = (pni_maps_want){.near_layers = 1};
 }
 
-const pn_technique_class pn_technique_hard = {
+const pni_technique_class pni_technique_hard = {
     .table = {.name = "hard",
               .title = "hard shadow",
               .help = "one map, one comparison: the shadow of the light's centre",

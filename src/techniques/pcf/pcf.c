@@ -8,12 +8,12 @@ static const pn_parameter parameters[] = {
     {"taps", "texels", "width of the box", "Reeves et al. 1987", PN_INT, 1, 64, 5, NULL},
 };
 
-static void want(const double *values, pn_maps_want *out) {
+static void want(const double *values, pni_maps_want *out) {
   (void)values;
-  *out = (pn_maps_want){.near_layers = 1};
+  *out = (pni_maps_want){.near_layers = 1};
 }
 
-const pn_technique_class pn_technique_pcf = {
+const pni_technique_class pni_technique_pcf = {
     .table = {.name = "pcf",
               .title = "percentage-closer filtering",
               .help = "a hard shadow with its edge smoothed over some texels, whatever the light's size",

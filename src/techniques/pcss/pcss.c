@@ -17,12 +17,12 @@ static void preset(int choice, double *values) {
   values[SAMPLES] = samples[choice];
 }
 
-static void want(const double *values, pn_maps_want *out) {
+static void want(const double *values, pni_maps_want *out) {
   (void)values;
-  *out = (pn_maps_want){.near_layers = 1, .range = {PN_RANGE_PYRAMID, false, false}};
+  *out = (pni_maps_want){.near_layers = 1, .range = {PNI_RANGE_PYRAMID, false, false}};
 }
 
-const pn_technique_class pn_technique_pcss = {
+const pni_technique_class pni_technique_pcss = {
     .table = {.name = "pcss",
               .title = "percentage-closer soft shadows",
               .help =

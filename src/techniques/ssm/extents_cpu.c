@@ -16,18 +16,18 @@ typedef struct {
 
 static int shifted(int size, int level) { return size >> level > 1 ? size >> level : 1; }
 
-static pn_result read_pyramid(pn_gpu *gpu, const pn_texture *texture, int layer, pyramid *out) {
+static pn_result read_pyramid(pni_gpu *gpu, const pni_texture *texture, int layer, pyramid *out) {
   size_t texels = 0;
   *out = (pyramid){texture->width, texture->height, texture->levels, {0}, NULL};
   for (int i = 0; i < texture->levels; i++)
     texels += (size_t)shifted(texture->width, i) * (size_t)shifted(texture->height, i);
-  out->memory = pn_reallocate(gpu, NULL, 2 * texels * sizeof(float));
+  out->memory = pni_reallocate(gpu, NULL, 2 * texels * sizeof(float));
   if (!out->memory) return PN_ERROR_OUT_OF_MEMORY;
   float *next = out->memory;
   GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
   for (int i = 0; i < texture->levels; i++) {
     int width = shifted(texture->width, i), height = shifted(texture->height, i);
-    pn_read_from(gpu, texture, i, layer);
+    pni_read_from(gpu, texture, i, layer);
     GL(gpu, ReadPixels)(0, 0, width, height, GL_RG, GL_FLOAT, next);
     out->level[i] = next;
     next += 2 * (size_t)width * (size_t)height;
@@ -43,7 +43,7 @@ static const float *pyramid_at(const pyramid *p, int x, int y, int level) {
 
 typedef struct {
   const ssm_list *list;
-  const pn_light_block *block;
+  const pni_light_block *block;
   pyramid occluders, receivers;
   float seen_bounds[4], share;
   int seen_size[2];
@@ -123,7 +123,7 @@ static void seen_between(const walk *w, const float low[2], const float high[2],
 static pn_result add_entry(walk *w, const float entry[8]) {
   if (w->count == w->capacity) {
     int capacity = w->capacity ? 2 * w->capacity : 4096;
-    float *grown = pn_reallocate(w->list->request->gpu, w->entries, (size_t)capacity * 8 * sizeof(float));
+    float *grown = pni_reallocate(w->list->request->gpu, w->entries, (size_t)capacity * 8 * sizeof(float));
     if (!grown) return PN_ERROR_OUT_OF_MEMORY;
     w->entries = grown;
     w->capacity = capacity;
@@ -167,8 +167,8 @@ static pn_result visit(walk *w, int x, int y, int level) {
 }
 
 pn_result ssm_cpu_list(const ssm_list *list, float **entries, int *count) {
-  const pn_visibility_request *r = list->request;
-  const pn_receiver_map_want *want = &r->pair->seen.want;
+  const pni_visibility_request *r = list->request;
+  const pni_receiver_map_want *want = &r->pair->seen.want;
   const double *b = want->bounds;
   walk w = {.list = list,
             .block = &r->maps->block,
@@ -179,28 +179,28 @@ pn_result ssm_cpu_list(const ssm_list *list, float **entries, int *count) {
   pn_result result = read_pyramid(r->gpu, &r->maps->range, list->map * r->maps->layers + list->layer, &w.occluders);
   if (result == PN_OK) result = read_pyramid(r->gpu, &r->pair->seen.range, list->seen_layer, &w.receivers);
   if (result == PN_OK) result = visit(&w, 0, 0, w.occluders.levels - 1);
-  pn_free(r->gpu, w.occluders.memory);
-  pn_free(r->gpu, w.receivers.memory);
-  if (result != PN_OK) pn_free(r->gpu, w.entries);
+  pni_free(r->gpu, w.occluders.memory);
+  pni_free(r->gpu, w.receivers.memory);
+  if (result != PN_OK) pni_free(r->gpu, w.entries);
   *entries = result == PN_OK ? w.entries : NULL;
   *count = result == PN_OK ? w.count : 0;
   return result;
 }
 
 pn_result ssm_cpu_upload(const ssm_list *list, const float *entries, int count) {
-  const pn_visibility_request *r = list->request;
-  pn_gpu *gpu = r->gpu;
-  const pn_texture *to[2] = {&r->pair->work[SSM_LIST], &r->pair->work[SSM_LIMITS]};
+  const pni_visibility_request *r = list->request;
+  pni_gpu *gpu = r->gpu;
+  const pni_texture *to[2] = {&r->pair->work[SSM_LIST], &r->pair->work[SSM_LIMITS]};
   int left = count - list->first, most = ssm_list_size(r->maps), width = to[0]->width;
   int rows = ((left < most ? left : most) + width - 1) / width;
-  float *part = pn_allocate_zero(gpu, (size_t)rows * (size_t)width * 4 * sizeof(float));
+  float *part = pni_allocate_zero(gpu, (size_t)rows * (size_t)width * 4 * sizeof(float));
   if (!part) return PN_ERROR_OUT_OF_MEMORY;
   for (int half = 0; half < 2; half++) {
     memset(part, 0, (size_t)rows * (size_t)width * 4 * sizeof(float));
     for (int i = 0; i < left && i < most; i++)
       memcpy(part + 4 * (size_t)i, entries + 8 * (size_t)(list->first + i) + 4 * half, 4 * sizeof(float));
-    pn_texture_write(gpu, to[half], width, rows, part);
+    pni_texture_write(gpu, to[half], width, rows, part);
   }
-  pn_free(gpu, part);
+  pni_free(gpu, part);
   return PN_OK;
 }

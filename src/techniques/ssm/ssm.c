@@ -52,35 +52,35 @@ static void preset(int choice, double *values) {
 static bool has_front(const double *values) { return values[SIDES] != SIDES_BACK; }
 static bool has_back(const double *values) { return values[SIDES] != SIDES_FRONT; }
 
-static void want(const double *values, pn_maps_want *out) {
-  *out = (pn_maps_want){
-      .near_layers = has_front(values), .farthest = has_back(values), .range = {.structure = PN_RANGE_PYRAMID}};
+static void want(const double *values, pni_maps_want *out) {
+  *out = (pni_maps_want){
+      .near_layers = has_front(values), .farthest = has_back(values), .range = {.structure = PNI_RANGE_PYRAMID}};
 }
 
 /* ---- programs ---------------------------------------------------------------------------------------------------- */
 
-static pn_result lookup_program(pn_gpu *gpu, const char *receiver_defines, bool bound, const pn_program **out) {
-  char defines[PN_RECEIVER_DEFINES + 16];
+static pn_result lookup_program(pni_gpu *gpu, const char *receiver_defines, bool bound, const pni_program **out) {
+  char defines[PNI_RECEIVER_DEFINES + 16];
   snprintf(defines, sizeof defines, "%sPN_BOUND %d\n", receiver_defines, bound);
-  pn_program_key key = {"shaders/screen.vert.glsl", "techniques/ssm/lookup.frag.glsl", NULL, defines};
-  return pn_program_get(gpu, &key, out);
+  pni_program_key key = {"shaders/screen.vert.glsl", "techniques/ssm/lookup.frag.glsl", NULL, defines};
+  return pni_program_get(gpu, &key, out);
 }
 
-static pn_result prepare(pn_gpu *gpu, const double *values) {
+static pn_result prepare(pni_gpu *gpu, const double *values) {
   static const char *const receivers[] = {"PN_NORMALS 0\nPN_MASK 0\n", "PN_NORMALS 1\nPN_MASK 0\n"};
-  const pn_program *program;
+  const pni_program *program;
   pn_result result = ssm_gpu_prepare(gpu);
   if (result == PN_OK) result = ssm_scatter_prepare(gpu);
   for (int i = 0; i < 2 && result == PN_OK; i++) result = lookup_program(gpu, receivers[i], false, &program);
-  return result == PN_OK ? pn_receiver_map_prepare(gpu, (int)values[LAYERS]) : result;
+  return result == PN_OK ? pni_receiver_map_prepare(gpu, (int)values[LAYERS]) : result;
 }
 
 /* ---- where the soft shadow map lies ------------------------------------------------------------------------------ */
 
 /* Casters grown by the penumbra, as far as receivers are seen there. False: nothing to shadow. */
-static bool place_axis(const pn_visibility_request *r, const pn_region *seen, int i, double *low, double *high) {
-  const pn_fit_result *fit = &r->maps->fit;
-  double reach = pn_penumbra_extent(r->frame->extent[i], fit->w_near, seen->least[2]);
+static bool place_axis(const pni_visibility_request *r, const pni_region *seen, int i, double *low, double *high) {
+  const pni_fit_result *fit = &r->maps->fit;
+  double reach = pni_penumbra_extent(r->frame->extent[i], fit->w_near, seen->least[2]);
   *low = fmax(fit->bounds[i] - reach, seen->least[i]);
   *high = fmin(fit->bounds[i + 2] + reach, seen->most[i]);
   if (!(*low <= *high)) return false;
@@ -89,24 +89,24 @@ static bool place_axis(const pn_visibility_request *r, const pn_region *seen, in
     *low -= least;
     *high += least;
   }
-  pn_fit_snap(low, high);
+  pni_fit_snap(low, high);
   return true;
 }
 
-static pn_result find_receivers(const pn_visibility_request *r, pn_region *seen) {
+static pn_result find_receivers(const pni_visibility_request *r, pni_region *seen) {
   if (r->visible) {
     *seen = *r->visible;
     return PN_OK;
   }
-  *seen = pn_region_empty();
-  return pn_receiver_bounds(r->receiver, r->frame, seen);
+  *seen = pni_region_empty();
+  return pni_receiver_bounds(r->receiver, r->frame, seen);
 }
 
-static bool place(const pn_visibility_request *r, const pn_region *seen, pn_receiver_map_want *out) {
+static bool place(const pni_visibility_request *r, const pni_region *seen, pni_receiver_map_want *out) {
   int size = (int)r->values[SIZE];
-  *out = (pn_receiver_map_want){.width = size ? size : r->desc->map_width,
-                                .height = size ? size : r->desc->map_height,
-                                .layers = (int)r->values[LAYERS]};
+  *out = (pni_receiver_map_want){.width = size ? size : r->desc->map_width,
+                                 .height = size ? size : r->desc->map_height,
+                                 .layers = (int)r->values[LAYERS]};
   for (int i = 0; i < 2; i++)
     if (!place_axis(r, seen, i, &out->bounds[i], &out->bounds[i + 2])) return false;
   /* Receivers in a plane that faces the light have no extent in w; the depth test needs one that floats resolve. */
@@ -118,23 +118,23 @@ static bool place(const pn_visibility_request *r, const pn_region *seen, pn_rece
 
 /* ---- the lookup -------------------------------------------------------------------------------------------------- */
 
-static pn_result look_up(const ssm_scattering *s, pn_attachment target) {
-  const pn_visibility_request *r = s->r;
-  char defines[PN_RECEIVER_DEFINES];
-  const pn_program *program;
-  pn_receiver_defines(r->receiver, defines);
+static pn_result look_up(const ssm_scattering *s, pni_attachment target) {
+  const pni_visibility_request *r = s->r;
+  char defines[PNI_RECEIVER_DEFINES];
+  const pni_program *program;
+  pni_receiver_defines(r->receiver, defines);
   pn_result result = lookup_program(r->gpu, defines, s->kind == SSM_SUM_BOUND, &program);
   if (result != PN_OK) return result;
-  pn_pass pass = {.color = {target}, .width = r->receiver->desc.width, .height = r->receiver->desc.height};
-  result = pn_screen_begin(r->gpu, &pass, program);
+  pni_pass pass = {.color = {target}, .width = r->receiver->desc.width, .height = r->receiver->desc.height};
+  result = pni_screen_begin(r->gpu, &pass, program);
   if (result != PN_OK) return result;
   GLint layers[4] = {r->pair->seen.want.layers, r->maps->layers, 0, 0};
-  pn_receiver_bind(r->receiver, program, r->frame, 1);
-  pn_receiver_map_bind(r->gpu, &r->pair->seen, program);
-  GL(r->gpu, Uniform4iv)(pn_uniform(program, "pn_layer"), 1, layers);
-  pn_bind_texture(r->gpu, PN_UNIT_WORK, s->soft->target, s->soft->id, false);
-  pn_bind_texture(r->gpu, PN_UNIT_MAPS, r->maps->depth.target, r->maps->depth.id, false);
-  pn_draw_screen(r->gpu);
+  pni_receiver_bind(r->receiver, program, r->frame, 1);
+  pni_receiver_map_bind(r->gpu, &r->pair->seen, program);
+  GL(r->gpu, Uniform4iv)(pni_uniform(program, "pn_layer"), 1, layers);
+  pni_bind_texture(r->gpu, PNI_UNIT_WORK, s->soft->target, s->soft->id, false);
+  pni_bind_texture(r->gpu, PNI_UNIT_MAPS, r->maps->depth.target, r->maps->depth.id, false);
+  pni_draw_screen(r->gpu);
   return PN_OK;
 }
 
@@ -142,25 +142,25 @@ static pn_result look_up(const ssm_scattering *s, pn_attachment target) {
 
 /* Appendix A, Eq. 4: beside a sum near 1, 16 bits keep nothing below 2^-10, and the smallest thing a micropatch hides
  * is its area on the light as the farthest receiver sees it. */
-static void warn_of_loss(const pn_visibility_request *r, const pn_region *seen) {
-  const pn_fit_result *fit = &r->maps->fit;
+static void warn_of_loss(const pni_visibility_request *r, const pni_region *seen) {
+  const pni_fit_result *fit = &r->maps->fit;
   const double *tile = fit->tile[0], *extent = r->frame->extent;
   double depth = fit->w_near - seen->least[2];
   double share = (tile[2] - tile[0]) / r->desc->map_width * (tile[3] - tile[1]) / r->desc->map_height /
                  (4 * extent[0] * extent[1] * depth * depth);
   bool loses = share < 0x1p-10;
   if (loses && !r->pair->warned)
-    pn_note(r->gpu, PN_LOG_WARNING, PN_MESSAGE_ACCUMULATION,
-            "micropatches may hide as little as %.2g of the light: sums in 16 bits lose what is below 2^-10 of them",
-            share);
+    pni_note(r->gpu, PN_LOG_WARNING, PN_MESSAGE_ACCUMULATION,
+             "micropatches may hide as little as %.2g of the light: sums in 16 bits lose what is below 2^-10 of them",
+             share);
   r->pair->warned = loses;
 }
 
-static int accumulation(const pn_visibility_request *r) {
+static int accumulation(const pni_visibility_request *r) {
   if (r->values[ACCUMULATE] != ACCUMULATE_FP32 || r->gpu->can.float_blend) return (int)r->values[ACCUMULATE];
   if (!r->pair->warned)
-    pn_note(r->gpu, PN_LOG_INFO, PN_MESSAGE_FALLBACK,
-            "this device does not blend 32-bit floats: soft shadow maps are summed up in 16 bits, by batches");
+    pni_note(r->gpu, PN_LOG_INFO, PN_MESSAGE_FALLBACK,
+             "this device does not blend 32-bit floats: soft shadow maps are summed up in 16 bits, by batches");
   r->pair->warned = true;
   return ACCUMULATE_BATCHED;
 }
@@ -168,71 +168,71 @@ static int accumulation(const pn_visibility_request *r) {
 /* ---- what it leaves for the host --------------------------------------------------------------------------------- */
 
 static void hand_out(const ssm_scattering *s) {
-  pn_pair *pair = s->r->pair;
-  const pn_receiver_map_want *w = &pair->seen.want;
+  pni_pair *pair = s->r->pair;
+  const pni_receiver_map_want *w = &pair->seen.want;
   pair->soft = (pn_soft_shadow_map){.sides = s->r->maps->layers,
                                     .layers = w->layers,
                                     .s0 = (float)w->bounds[0],
                                     .t0 = (float)w->bounds[1],
                                     .s1 = (float)w->bounds[2],
                                     .t1 = (float)w->bounds[3]};
-  pn_texture_image(s->soft, &pair->soft.image);
+  pni_texture_image(s->soft, &pair->soft.image);
 }
 
-static ssm_scattering start(const pn_visibility_request *r, ssm_sum_kind kind, const pn_texture *soft) {
+static ssm_scattering start(const pni_visibility_request *r, ssm_sum_kind kind, const pni_texture *soft) {
   return (ssm_scattering){
       .r = r, .kind = kind, .soft = soft, .on_cpu = r->values[EXTENTS] == EXTENTS_CPU, .share = r->values[MERGE] / 100};
 }
 
 /* Eq. 3 instead of the shadow: how far the sums may be off because neighbouring micropatches overlap or part. */
-static pn_result draw_bound(const pn_visibility_request *r) {
-  pn_texture *soft = &r->pair->work[SSM_BOUND], *image = &r->pair->bound;
-  const pn_receiver_map_want *w = &r->pair->seen.want;
+static pn_result draw_bound(const pni_visibility_request *r) {
+  pni_texture *soft = &r->pair->work[SSM_BOUND], *image = &r->pair->bound;
+  const pni_receiver_map_want *w = &r->pair->seen.want;
   const pn_receiver_desc *view = &r->receiver->desc;
   ssm_scattering s = start(r, SSM_SUM_BOUND, soft);
-  pn_result result = pn_texture_shape(r->gpu, soft, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
-  if (result == PN_OK) result = pn_texture_shape(r->gpu, image, GL_R32F, view->width, view->height, 0, 1);
+  pn_result result = pni_texture_shape(r->gpu, soft, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
+  if (result == PN_OK) result = pni_texture_shape(r->gpu, image, GL_R32F, view->width, view->height, 0, 1);
   if (result == PN_OK) result = ssm_scatter(&s);
-  if (result == PN_OK) result = look_up(&s, (pn_attachment){image->id, image->target, 0, 0});
+  if (result == PN_OK) result = look_up(&s, (pni_attachment){image->id, image->target, 0, 0});
   ssm_mark(&s, "debug");
   return result;
 }
 
 /* How many micropatches each texel was asked about. */
-static pn_result draw_counts(const pn_visibility_request *r) {
-  pn_texture *covered = &r->pair->covered;
-  const pn_receiver_map_want *w = &r->pair->seen.want;
+static pn_result draw_counts(const pni_visibility_request *r) {
+  pni_texture *covered = &r->pair->covered;
+  const pni_receiver_map_want *w = &r->pair->seen.want;
   ssm_scattering s = start(r, SSM_SUM_COUNT, covered);
-  pn_result result = pn_texture_shape(r->gpu, covered, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
+  pn_result result = pni_texture_shape(r->gpu, covered, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
   if (result == PN_OK) result = ssm_scatter(&s);
   return result;
 }
 
 /* ---- all of it --------------------------------------------------------------------------------------------------- */
 
-static pn_result shape(const pn_visibility_request *r, const pn_receiver_map_want *w, int accumulate) {
-  pn_texture *work = r->pair->work;
+static pn_result shape(const pni_visibility_request *r, const pni_receiver_map_want *w, int accumulate) {
+  pni_texture *work = r->pair->work;
   GLenum format = accumulate == ACCUMULATE_FP16 ? GL_R16F : GL_R32F;
   pn_result result =
-      pn_texture_shape(r->gpu, &work[SSM_SOFT], format, w->width, w->height, r->maps->layers * w->layers, 1);
+      pni_texture_shape(r->gpu, &work[SSM_SOFT], format, w->width, w->height, r->maps->layers * w->layers, 1);
   for (int i = SSM_BATCH; i < SSM_SOFT && result == PN_OK && accumulate == ACCUMULATE_BATCHED; i++)
-    result = pn_texture_shape(r->gpu, &work[i], i == SSM_BATCH ? GL_R16F : GL_R32F, w->width, w->height, 0, 1);
+    result = pni_texture_shape(r->gpu, &work[i], i == SSM_BATCH ? GL_R16F : GL_R32F, w->width, w->height, 0, 1);
   return result == PN_OK ? ssm_gpu_shape(r) : result;
 }
 
-static pn_result draw(const pn_visibility_request *r) {
-  pn_region seen;
-  pn_receiver_map_want where;
+static pn_result draw(const pni_visibility_request *r) {
+  pni_region seen;
+  pni_receiver_map_want where;
   pn_result result = find_receivers(r, &seen);
   if (result != PN_OK) return result;
   const pn_receiver_desc *view = &r->receiver->desc;
-  if (!place(r, &seen, &where)) return pn_fill(r->gpu, r->target, view->width, view->height, 1);
+  if (!place(r, &seen, &where)) return pni_fill(r->gpu, r->target, view->width, view->height, 1);
   int accumulate = accumulation(r);
   ssm_scattering s = start(r, SSM_SUM_SHADOW, &r->pair->work[SSM_SOFT]);
   s.by_batches = accumulate == ACCUMULATE_BATCHED;
   if (r->values[ACCUMULATE] == ACCUMULATE_FP16) warn_of_loss(r, &seen);
   result = shape(r, &where, accumulate);
-  if (result == PN_OK) result = pn_receiver_map_draw(r->receiver, r->frame, &where, &r->pair->seen);
+  if (result == PN_OK) result = pni_receiver_map_draw(r->receiver, r->frame, &where, &r->pair->seen);
   ssm_mark(&s, "receiver_map");
   if (result == PN_OK) result = ssm_scatter(&s);
   if (result == PN_OK) result = look_up(&s, r->target);
@@ -244,7 +244,7 @@ static pn_result draw(const pn_visibility_request *r) {
   return result;
 }
 
-const pn_technique_class pn_technique_ssm = {
+const pni_technique_class pni_technique_ssm = {
     .table = {.name = "ssm",
               .title = "soft shadow maps",
               .help = "every texel of the occluder map scatters what it hides of the light into a map of the shadow",

@@ -6,7 +6,7 @@
 
 /* The pair's textures that are ours. */
 enum { SSM_COUNTS, SSM_LIST, SSM_LIMITS, SSM_ARGUMENTS, SSM_BATCH, SSM_SUM, SSM_SOFT = SSM_SUM + 2, SSM_BOUND };
-_Static_assert((int)SSM_BOUND < (int)PN_WORK_MAX, "the pair has a place for every texture");
+_Static_assert((int)SSM_BOUND < (int)PNI_WORK_MAX, "the pair has a place for every texture");
 
 /* What the GPU counts: vertices of a list's micropatches, and of the rows of its texture. */
 enum { SSM_DRAW_PATCHES, SSM_DRAW_ROWS, SSM_DRAWS };
@@ -16,7 +16,7 @@ enum { SSM_LIST_WIDTH = 1024, SSM_LIST_MOST = 1024 * 1024 };
 
 /* One list of micropatches: those of one side in one map, for one layer of the receiver map. */
 typedef struct {
-  const pn_visibility_request *request;
+  const pni_visibility_request *request;
   int map, layer; /* of the occluder maps, and within one */
   int seen_layer;
   double share; /* of the light's width that merging may move an edge; 0: every texel for itself */
@@ -24,19 +24,19 @@ typedef struct {
 } ssm_list;
 
 /* Entries there can be at most, and the size of one list. */
-int ssm_list_most(const pn_maps *maps);
-int ssm_list_size(const pn_maps *maps);
+int ssm_list_most(const pni_maps *maps);
+int ssm_list_size(const pni_maps *maps);
 
 /* The pyramid of counts, then the list from entry first on, and its draw's arguments. (extents_gpu.c) */
 pn_result ssm_gpu_count(const ssm_list *list);
 pn_result ssm_gpu_list(const ssm_list *list);
 /* Entries in all: read back. */
 pn_result ssm_gpu_total(const ssm_list *list, int *out);
-pn_result ssm_gpu_shape(const pn_visibility_request *request);
-pn_result ssm_gpu_prepare(pn_gpu *gpu);
+pn_result ssm_gpu_shape(const pni_visibility_request *request);
+pn_result ssm_gpu_prepare(pni_gpu *gpu);
 
 /* The same list, made on the CPU from the maps read back. entries: 8 floats each, as list.frag.glsl lays them out;
- * pn_free frees them. (extents_cpu.c) */
+ * pni_free frees them. (extents_cpu.c) */
 pn_result ssm_cpu_list(const ssm_list *list, float **entries, int *count);
 /* Puts entries from list->first on where the GPU's list lies. */
 pn_result ssm_cpu_upload(const ssm_list *list, const float *entries, int count);
@@ -45,19 +45,19 @@ pn_result ssm_cpu_upload(const ssm_list *list, const float *entries, int count);
 typedef enum { SSM_SUM_SHADOW, SSM_SUM_BOUND, SSM_SUM_COUNT } ssm_sum_kind;
 
 typedef struct {
-  const pn_visibility_request *r;
+  const pni_visibility_request *r;
   bool by_batches; /* of the shadow only */
   bool on_cpu;     /* where extents are found */
   double share;    /* as ssm_list's */
   ssm_sum_kind kind;
-  const pn_texture *soft; /* the soft shadow map: sides, and in each a layer for each of the receivers */
-  int sum;                /* by batches: which of two images holds it */
-  pn_attachment target;   /* the layer of it that is summed up */
+  const pni_texture *soft; /* the soft shadow map: sides, and in each a layer for each of the receivers */
+  int sum;                 /* by batches: which of two images holds it */
+  pni_attachment target;   /* the layer of it that is summed up */
 } ssm_scattering;
 
 /* Sums up all sides for all layers of receivers into soft. (scatter.c) */
 pn_result ssm_scatter(ssm_scattering *scattering);
-pn_result ssm_scatter_prepare(pn_gpu *gpu);
+pn_result ssm_scatter_prepare(pni_gpu *gpu);
 /* What was drawn since the last mark was this stage. */
 void ssm_mark(const ssm_scattering *scattering, const char *stage);
 
