@@ -3,6 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gl/host.h"
+#include "gl/label.h"
+#include "gl/program.h"
+
 /* ---- creation ---------------------------------------------------------------------------------------------------- */
 
 pn_result pn_context_create(const pn_context_desc *desc, pn_context **out) {
@@ -29,10 +33,6 @@ pn_result pn_context_create(const pn_context_desc *desc, pn_context **out) {
   return PN_OK;
 }
 
-static void free_objects(pn_context *context, bool abandon) {
-  while (context->objects) context->objects->free(context->objects, abandon);
-}
-
 static void free_forward_texts(pn_context *context) {
   while (context->forward_texts) {
     pni_forward_text *text = context->forward_texts;
@@ -47,7 +47,7 @@ static void close_context(pn_context **handle, bool abandon) {
   if (!handle || !*handle) return;
   pn_context *context = *handle;
   *handle = NULL;
-  free_objects(context, abandon);
+  while (context->objects) pni_object_free(context->objects, abandon);
   free_forward_texts(context);
   pni_buffer_free(&context->gpu, &context->forward_block, abandon);
   pni_gpu_close(&context->gpu, abandon);
@@ -64,29 +64,62 @@ void pn_context_abandon(pn_context **context) { close_context(context, true); }
 void *pni_object_create(pn_context *context, void (*release)(pni_object *, bool), size_t bytes) {
   pni_object *object = pni_allocate_zero(&context->gpu, bytes);
   if (!object) return NULL;
-  object->free = release;
+  object->release = release;
   object->context = context;
+  object->serial = ++context->serial;
   object->next = context->objects;
   if (object->next) object->next->previous = object;
   context->objects = object;
   return object;
 }
 
-void pni_object_unlink(pni_object *object) {
+static void unlink_object(pni_object *object) {
   if (object->next) object->next->previous = object->previous;
   if (object->previous) object->previous->next = object->next;
   else object->context->objects = object->next;
 }
 
+/* What needs the object needs nothing else's help to go, so that one step down is enough. */
+static void free_dependants(pni_object *object, bool abandon) {
+  for (pni_object *o = object->context->objects, *next; o; o = next) {
+    next = o->next;
+    if (o->needs[0] == object || o->needs[1] == object) pni_object_free(o, abandon);
+  }
+}
+
+void pni_object_free(pni_object *object, bool abandon) {
+  if (!object->needs[0]) free_dependants(object, abandon);
+  object->release(object, abandon);
+  unlink_object(object);
+  pni_free(&object->context->gpu, object);
+}
+
+void pni_object_destroy(pni_object *object) {
+  if (!object) return;
+  pn_context *context = object->context;
+  pni_enter(context);
+  pni_object_free(object, false);
+  pni_leave(context, PN_OK);
+}
+
+pni_object *pni_object_find(const pn_context *context, uint64_t serial) {
+  pni_object *object = context->objects;
+  while (object && object->serial != serial) object = object->next;
+  return object;
+}
+
 /* ---- the host's GL state ----------------------------------------------------------------------------------------- */
 
 void pni_enter(pn_context *context) {
+  pni_forget(&context->gpu);
   if (context->gpu.desc.state == PN_STATE_RESTORE) pni_state_save(&context->gpu, &context->saved);
 }
 
 pn_result pni_leave(pn_context *context, pn_result result) {
+  pni_group(&context->gpu, NULL);
   if (context->gpu.desc.state == PN_STATE_RESTORE) pni_state_restore(&context->gpu, &context->saved);
   if (context->gpu.desc.state == PN_STATE_RESET) pni_state_reset(&context->gpu);
+  pni_forget(&context->gpu);
   return result;
 }
 
@@ -131,15 +164,14 @@ pn_result pn_context_info(const pn_context *context, pn_info *out) {
   if (!context || !out) return PN_ERROR_ARGUMENT;
   const pni_gpu *gpu = &context->gpu;
   *out = (pn_info){
-      .vendor = (const char *)GL(gpu, GetString)(GL_VENDOR),
-      .renderer = (const char *)GL(gpu, GetString)(GL_RENDERER),
-      .version = (const char *)GL(gpu, GetString)(GL_VERSION),
       .gl_version = gpu->can.version,
       .software = gpu->can.software,
       .map_size_max = at_most(gpu->can.texture_size_max, PN_MAP_SIZE_MAX),
       .map_layers_max = gpu->can.layers_max,
       .gpu_memory = gpu->memory,
+      .gl_calls = gpu->calls,
   };
+  pni_gpu_names((pni_gpu *)gpu, &out->vendor, &out->renderer, &out->version);
   return PN_OK;
 }
 
@@ -149,11 +181,12 @@ int pn_feature(const pn_context *context, int index, const char **name, int *in_
   } features[] = {
       {"timestamps", "stage times from the GPU's own clock; without: glFinish and the system's clock"},
       {"clip_control", "saves and sets glClipControl; without: nothing to save"},
+      {"labels", "GL objects and passes carry names for RenderDoc and apitrace; without: none"},
       {"robustness", "a lost context is noticed by its reset status; without: by failing calls"},
   };
   if (!context || index < 0 || index >= (int)(sizeof features / sizeof *features)) return 0;
   const pni_capabilities *can = &context->gpu.can;
-  const int used[] = {!can->software, can->clip_control, can->robustness};
+  const int used[] = {!can->software, can->clip_control, can->labels, can->robustness};
   if (name) *name = features[index].name;
   if (in_use) *in_use = used[index];
   if (help) *help = features[index].help;

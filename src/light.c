@@ -2,37 +2,34 @@
 #include "light.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-#include "search/gather.h"
+#include "gl/host.h"
+#include "maps/maps.h"
 
 /* ---- the object -------------------------------------------------------------------------------------------------- */
 
-static void free_light(pni_object *object, bool abandon) {
+static void release_light(pni_object *object, bool abandon) {
   pn_light *light = (pn_light *)object;
   pni_gpu *gpu = pni_light_gpu(light);
-  pni_pairs_drop(&light->object, abandon);
+  pni_kept_free(gpu, &light->kept, abandon);
   pni_maps_free(gpu, &light->maps, abandon);
   pni_buffer_free(gpu, &light->block, abandon);
   pni_clock_free(gpu, &light->clock, abandon);
-  pni_object_unlink(&light->object);
-  pni_free(gpu, light);
 }
 
 pn_result pn_light_create(pn_context *context, pn_light **out) {
   if (!context) return PN_ERROR_ARGUMENT;
   if (!out) return pni_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_light_create: out is NULL");
-  *out = pni_object_create(context, free_light, sizeof **out);
+  *out = pni_object_create(context, release_light, sizeof **out);
   if (!*out) return PN_ERROR_OUT_OF_MEMORY;
   return pn_light_technique(*out, PN_TECHNIQUE_DEFAULT, NULL, 0);
 }
 
 void pn_light_destroy(pn_light **light) {
   if (!light || !*light) return;
-  pn_context *context = (*light)->object.context;
-  pni_enter(context);
-  free_light(&(*light)->object, false);
-  pni_leave(context, PN_OK);
+  pni_object_destroy(&(*light)->object);
   *light = NULL;
 }
 
@@ -80,11 +77,25 @@ static pn_result make_frame(pni_gpu *gpu, const pn_light_desc *d, pni_frame *fra
   if (!sound)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_LIGHT_FRAME,
                     "centre, direction and axis must be finite, direction and axis neither zero nor parallel");
-  frame->sun = d->shape == PN_LIGHT_SUN;
-  for (int i = 0; i < 3; i++) frame->origin[i] = frame->sun ? 0 : d->center[i];
-  frame->extent[0] = d->half_u;
-  frame->extent[1] = d->half_v;
+  bool sun = d->shape == PN_LIGHT_SUN;
+  frame->projection = sun ? PNI_PARALLEL : PNI_CENTRAL;
+  for (int i = 0; i < 3; i++) frame->origin[i] = sun ? 0 : d->center[i];
   return PN_OK;
+}
+
+static bool same_numbers(const float *a, const float *b, int count) {
+  for (int i = 0; i < count; i++)
+    if (a[i] != b[i]) return false;
+  return true;
+}
+
+/* Member by member: what lies between members says nothing. */
+static bool same_light(const pn_light_desc *a, const pn_light_desc *b) {
+  return a->shape == b->shape && same_numbers(a->center, b->center, 3) && same_numbers(a->direction, b->direction, 3) &&
+         same_numbers(a->axis_u, b->axis_u, 3) && a->half_u == b->half_u && a->half_v == b->half_v &&
+         a->near_distance == b->near_distance && a->range == b->range && a->texture == b->texture && a->fit == b->fit &&
+         same_numbers(a->fit_bounds, b->fit_bounds, 6) && a->map_width == b->map_width &&
+         a->map_height == b->map_height;
 }
 
 pn_result pn_light_set(pn_light *light, const pn_light_desc *desc) {
@@ -96,13 +107,13 @@ pn_result pn_light_set(pn_light *light, const pn_light_desc *desc) {
   if (result == PN_OK) result = check_maps(gpu, desc);
   if (result == PN_OK) result = make_frame(gpu, desc, &frame);
   if (result != PN_OK) return result;
-  pn_light_desc filled;
-  memcpy(&filled, desc, sizeof filled); /* padding too: the next line compares it */
+  pn_light_desc filled = *desc;
   if (!filled.map_width) filled.map_width = 512;
   if (!filled.map_height) filled.map_height = filled.map_width;
-  if (light->set && !memcmp(&light->desc, &filled, sizeof filled)) return PN_OK;
-  memcpy(&light->desc, &filled, sizeof filled);
+  if (light->set && same_light(&light->desc, &filled)) return PN_OK;
+  light->desc = filled;
   light->frame = frame;
+  light->emission = (pni_emission){{desc->half_u, desc->half_v}};
   light->set = true;
   light->warned_angle = false;
   light->maps.ready = false;
@@ -111,30 +122,25 @@ pn_result pn_light_set(pn_light *light, const pn_light_desc *desc) {
 
 /* ---- the technique ----------------------------------------------------------------------------------------------- */
 
+static bool same_values(const double *a, const double *b) {
+  for (int i = 0; i < PNI_PARAMETERS_MAX; i++)
+    if (a[i] != b[i]) return false;
+  return true;
+}
+
 pn_result pn_light_technique(pn_light *light, const char *spec, char *why, size_t why_size) {
   if (!light) return PN_ERROR_ARGUMENT;
-  if (!spec) {
-    if (why && why_size) why[0] = 0;
+  if (why && why_size) why[0] = 0;
+  if (!spec)
     return pni_fail(pni_light_gpu(light), PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
                     "pn_light_technique: spec is NULL");
-  }
-  char text[512];
-  const pn_technique *table;
-  double values[PNI_PARAMETERS_MAX] = {0};
-  pn_result result = pn_technique_parse(spec, &table, values, text, sizeof text);
-  if (why && why_size) {
-    strncpy(why, text, why_size - 1);
-    why[why_size - 1] = 0;
-  }
-  if (result != PN_OK) {
-    bool known = spec && strstr(text, "parameter '");
-    pn_message message = strstr(text, "is no value") ? PN_MESSAGE_PARAMETER_VALUE
-                         : known                     ? PN_MESSAGE_PARAMETER_UNKNOWN
-                                                     : PN_MESSAGE_TECHNIQUE_UNKNOWN;
-    return pni_fail(pni_light_gpu(light), result, message, "%s", text);
-  }
-  const pni_technique_class *technique = pni_technique_class_of(table);
-  if (technique == light->technique && !memcmp(values, light->values, sizeof values)) return PN_OK;
+  const pni_technique_class *technique;
+  double values[PNI_PARAMETERS_MAX];
+  pni_explanation explanation;
+  pn_result result = pni_spec_read(spec, &technique, values, &explanation);
+  if (why && why_size) snprintf(why, why_size, "%s", explanation.text);
+  if (result != PN_OK) return pni_fail(pni_light_gpu(light), result, explanation.message, "%s", explanation.text);
+  if (technique == light->technique && same_values(values, light->values)) return PN_OK;
   light->technique = technique;
   memcpy(light->values, values, sizeof values);
   light->maps.ready = false;
@@ -144,49 +150,51 @@ pn_result pn_light_technique(pn_light *light, const char *spec, char *why, size_
 pn_result pn_light_parameter(pn_light *light, const char *name, double value) {
   if (!light) return PN_ERROR_ARGUMENT;
   pni_gpu *gpu = pni_light_gpu(light);
-  pn_message message;
   if (!name) return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_light_parameter: name is NULL");
   pni_maps_want before, after;
+  pni_explanation explanation;
   light->technique->want(light->values, &before);
-  if (!pni_parameter_set(&light->technique->table, name, value, light->values, &message))
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, message, "technique %s: %s = %g", light->technique->table.name, name,
-                    value);
+  pn_result result = pni_parameter_set(light->technique, name, value, light->values, &explanation);
+  if (result != PN_OK) return pni_fail(gpu, result, explanation.message, "%s", explanation.text);
   light->technique->want(light->values, &after);
-  if (memcmp(&before, &after, sizeof before)) light->maps.ready = false;
+  if (!pni_want_same(&before, &after)) light->maps.ready = false;
   return PN_OK;
 }
 
-pn_result pn_prepare(pn_context *context, const char *spec) {
-  if (!context) return PN_ERROR_ARGUMENT;
-  pni_gpu *gpu = &context->gpu;
-  char why[512];
-  const pn_technique *table;
-  double values[PNI_PARAMETERS_MAX] = {0};
-  if (pn_technique_parse(spec ? spec : PN_TECHNIQUE_DEFAULT, &table, values, why, sizeof why) != PN_OK)
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_TECHNIQUE_UNKNOWN, "%s", why);
-  const pni_technique_class *technique = pni_technique_class_of(table);
-  char defines[PNI_TECHNIQUE_DEFINES];
-  pni_maps_want want;
-  technique->want(values, &want);
-  pni_technique_defines(technique, values, defines);
-  pni_enter(context);
-  pn_result result = pni_maps_prepare(gpu, &want);
-  if (result == PN_OK)
-    result = technique->prepare ? technique->prepare(gpu, values) : pni_gather_prepare(gpu, technique->shader, defines);
-  return pni_leave(context, result);
-}
-
-/* ---- the uniform block ---- */
+/* ---- for the passes ---------------------------------------------------------------------------------------------- */
 
 void pni_light_fill_block(const pn_light *light, pni_light_block *block) {
   *block = light->maps.block;
   for (int i = 0; i < light->technique->table.parameter_count; i++) block->parameters[i] = (float)light->values[i];
 }
 
+/* The block is floats from end to end, so that its bytes are what it says. */
 pn_result pni_light_bind_block(pn_light *light) {
+  pni_gpu *gpu = pni_light_gpu(light);
   pni_light_block block;
   pni_light_fill_block(light, &block);
-  pn_result result = pni_uniform_buffer_set(pni_light_gpu(light), &light->block, &block, sizeof block);
-  if (result == PN_OK) GL(pni_light_gpu(light), BindBufferBase)(GL_UNIFORM_BUFFER, PNI_BLOCK_BINDING, light->block.id);
-  return result;
+  if (!light->block.id || memcmp(&block, &light->uploaded, sizeof block) != 0) {
+    pn_result result = pni_buffer_fill(gpu, &light->block, "light", PNI_BUFFER_BLOCK, &block, sizeof block);
+    if (result != PN_OK) return result;
+    light->uploaded = block;
+  }
+  pni_bind_block(gpu, &light->block);
+  return PN_OK;
+}
+
+pn_result pni_light_job(pn_light *light, pni_job *out) {
+  const pni_technique_class *technique = light->technique;
+  *out = (pni_job){.gpu = pni_light_gpu(light),
+                   .table = &technique->table,
+                   .gathering = &technique->gathering,
+                   .values = light->values,
+                   .desc = &light->desc,
+                   .frame = &light->frame,
+                   .emission = &light->emission,
+                   .maps = &light->maps,
+                   .casters = (pn_casters *)pni_object_find(light->object.context, light->casters),
+                   .groups = light->groups,
+                   .visible = light->has_visible ? &light->visible : NULL,
+                   .clock = &light->clock};
+  return pni_kept_get(out->gpu, &light->kept, &technique->light_kind, &out->light_state);
 }

@@ -1,19 +1,23 @@
 /* A light: its frame, technique and maps. */
-#ifndef PN_LIGHT_H
-#define PN_LIGHT_H
+#ifndef PNI_LIGHT_H
+#define PNI_LIGHT_H
 
-#include "techniques/technique.h"
+#include "pair.h"
+#include "techniques/registry.h"
 
 struct pn_light {
   pni_object object;
   bool set;
   pn_light_desc desc; /* defaults filled in */
   pni_frame frame;
+  pni_emission emission;
   const pni_technique_class *technique;
   double values[PNI_PARAMETERS_MAX];
   pni_maps maps;
   pni_buffer block;
-  pn_casters *casters; /* of the last update; looked up before it is used, since it may be gone */
+  pni_light_block uploaded; /* what block holds */
+  pni_kept kept;            /* by the technique */
+  uint64_t casters;         /* serial of those of the last update, which may be gone */
   uint32_t groups;
   pni_region visible;
   bool has_visible;
@@ -27,5 +31,8 @@ static inline pni_gpu *pni_light_gpu(const pn_light *light) { return &light->obj
 void pni_light_fill_block(const pn_light *light, pni_light_block *block);
 /* The same, uploaded and bound for the library's own passes. */
 pn_result pni_light_bind_block(pn_light *light);
+
+/* The light's part of a job. */
+pn_result pni_light_job(pn_light *light, pni_job *out);
 
 #endif

@@ -1,7 +1,10 @@
 /* pn_maps_update: what casts, fitted and drawn. */
 #include <string.h>
 
+#include "gl/host.h"
 #include "light.h"
+#include "maps/maps.h"
+#include "maps/range.h"
 
 /* What PN_FIT_FRUSTUM looks at; for PN_FIT_VISIBLE too it comes first, because it costs nothing and may settle the
  * matter. */
@@ -31,6 +34,7 @@ static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, i
 static pni_fit_request fit_request(const pn_light *light, const pni_maps_want *want) {
   const pn_light_desc *d = &light->desc;
   return (pni_fit_request){.frame = &light->frame,
+                           .emission = &light->emission,
                            .near_distance = d->near_distance,
                            .range = d->range,
                            .width = d->map_width,
@@ -41,66 +45,69 @@ static pni_fit_request fit_request(const pn_light *light, const pni_maps_want *w
                            .reach_width = want->reach_width};
 }
 
-static void fit_light(pn_light *light, const pni_maps_want *want) {
+static void fit_light(pn_light *light, const pn_casters *casters, const pni_maps_want *want) {
   pni_fit_request request = fit_request(light, want);
-  pni_fit_maps(light->casters, light->groups, &request, &light->maps.fit);
+  pni_fit_maps(casters, light->groups, &request, &light->maps.fit);
   if (!light->maps.fit.clamped || light->warned_angle) return;
   light->warned_angle = true;
   pni_note(pni_light_gpu(light), PN_LOG_WARNING, PN_MESSAGE_LIGHT_ANGLE,
            "the map would open past 170 degrees; casters beyond are left out");
 }
 
-static pni_map_draw tile_draw(const pn_light *light, const pni_maps_want *want, int tile) {
+static pni_map_draw tile_draw(const pn_light *light, pn_casters *casters, const pni_maps_want *want, int tile) {
   const pni_fit_result *fit = &light->maps.fit;
   pni_fit_request request = fit_request(light, want);
-  pni_map_draw draw = {.frame = &light->frame,
-                       .casters = light->casters,
-                       .groups = light->groups,
-                       .map = tile,
-                       .w_near = fit->w_near,
-                       .w_far = fit->w_far};
+  pni_map_draw draw = {
+      .frame = &light->frame, .casters = casters, .groups = light->groups, .w_near = fit->w_near, .w_far = fit->w_far};
   memcpy(draw.bounds, fit->tile[tile], sizeof draw.bounds);
   if (want->focus > 0) draw.later = pni_fit_focus(&request, fit, tile, want->focus);
   return draw;
 }
 
-static pn_result draw_maps(pn_light *light, const pni_maps_want *want) {
+static pn_result draw_maps(pn_light *light, pn_casters *casters, const pni_maps_want *want) {
   pni_gpu *gpu = pni_light_gpu(light);
   pni_maps *maps = &light->maps;
-  int width = light->desc.map_width, height = light->desc.map_height;
-  pn_result result = pni_maps_shape(gpu, maps, want, maps->fit.tiles, width, height);
+  pn_result result = pni_maps_shape(gpu, maps, want, maps->fit.tiles, light->desc.map_width, light->desc.map_height);
   if (result != PN_OK) return result;
-  pni_block_frame(&maps->block, &light->frame, gpu, maps->fit.tiles, maps->layers, width, height);
-  maps->block.extent[3] = (float)maps->fit.w_reach;
+  pni_maps_describe(gpu, maps, &light->frame, &light->emission);
   for (int tile = 0; tile < maps->fit.tiles && result == PN_OK; tile++) {
-    pni_map_draw draw = tile_draw(light, want, tile);
-    pni_block_map(&maps->block, gpu, &draw, width, height);
-    result = pni_maps_draw(gpu, maps, &draw);
+    pni_map_draw draw = tile_draw(light, casters, want, tile);
+    result = pni_maps_add(gpu, maps, &draw);
   }
   pni_clock_mark(gpu, &light->clock, "depth_map");
   if (result != PN_OK || !want->range.structure) return result;
   result = pni_light_bind_block(light);
-  const pni_technique_class *technique = light->technique;
-  bool own = want->range.structure == PNI_RANGE_OWN;
-  pni_build_request request = {gpu, &light->frame, light->values, maps, light->casters, light->groups};
-  if (result == PN_OK) result = own ? technique->build(&request) : pni_range_build(gpu, maps);
-  pni_clock_mark(gpu, &light->clock, own ? technique->stage : "range");
+  if (result == PN_OK) result = pni_range_build(gpu, maps);
+  pni_clock_mark(gpu, &light->clock, "range");
   return result;
 }
 
-static pn_result update_maps(pn_light *light, pn_receiver *const *visible, int visible_count) {
+/* What the technique makes of the maps. */
+static pn_result update_technique(pn_light *light) {
+  const pni_technique_class *technique = light->technique;
+  pni_job job;
+  pn_result result = pni_light_job(light, &job);
+  if (result != PN_OK || !technique->update) return result;
+  result = pni_light_bind_block(light);
+  if (result == PN_OK) result = technique->update(&job);
+  pni_clock_mark(job.gpu, &light->clock, technique->stage);
+  return result;
+}
+
+static pn_result update_maps(pn_light *light, pn_casters *casters, pn_receiver *const *visible, int visible_count) {
   pn_result result = pni_gpu_check_lost(pni_light_gpu(light));
   if (result == PN_OK) result = find_frusta(light, visible, visible_count);
   if (result != PN_OK) return result;
   pni_maps_want want;
   light->technique->want(light->values, &want);
-  fit_light(light, &want);
+  fit_light(light, casters, &want);
   if (light->desc.fit == PN_FIT_VISIBLE && light->has_visible && !light->maps.fit.empty) {
     result = find_surfaces(light, visible, visible_count);
     if (result != PN_OK) return result;
-    fit_light(light, &want);
+    fit_light(light, casters, &want);
   }
-  if (!light->maps.fit.empty && pni_want_layers(&want) > 0) result = draw_maps(light, &want);
+  if (!light->maps.fit.empty && pni_want_layers(&want) > 0) result = draw_maps(light, casters, &want);
+  if (!light->maps.fit.empty && result == PN_OK) result = update_technique(light);
   light->maps.ready = result == PN_OK;
   return result;
 }
@@ -112,11 +119,11 @@ pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, 
   if (!casters || (visible_count > 0 && !visible) || visible_count < 0)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_maps_update: casters or visible is NULL");
   if (!light->set) return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_LIGHT_UNSET, "pn_light_set comes first");
-  light->casters = casters;
+  light->casters = casters->object.serial;
   light->groups = groups;
   pni_enter(light->object.context);
   pni_clock_start(gpu, &light->clock);
-  pn_result result = update_maps(light, visible, visible_count);
+  pn_result result = update_maps(light, casters, visible, visible_count);
   pni_clock_end(gpu, &light->clock);
   return pni_leave(light->object.context, result);
 }
@@ -132,7 +139,7 @@ pn_result pn_light_maps(const pn_light *light, pn_maps_info *out) {
   *out = (pn_maps_info){
       .empty = maps->fit.empty,
       .tiles = maps->fit.tiles,
-      .layers = maps->layers,
+      .layers = pni_want_layers(&maps->want),
       .width = light->desc.map_width,
       .height = light->desc.map_height,
       .s0 = (float)b[0],

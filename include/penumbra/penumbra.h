@@ -191,6 +191,7 @@ typedef struct {
   int map_size_max;                        /* largest map width and height here */
   int map_layers_max;                      /* layers of depth a light can have: peeled layers times tiles */
   size_t gpu_memory;                       /* bytes the library holds in GL now */
+  size_t gl_calls; /* GL calls so far, in builds with assertions; else 0 */
 } pn_info;
 PN_API pn_result pn_context_info(const pn_context *context, pn_info *out);
 

@@ -5,35 +5,31 @@
 #include <string.h>
 
 #include "casters/mesh.h"
+#include "gl/host.h"
 
 static pni_gpu *gpu_of(const pn_casters *casters) { return &casters->object.context->gpu; }
 
 /* ---- the object -------------------------------------------------------------------------------------------------- */
 
-static void free_casters(pni_object *object, bool abandon) {
+static void release_casters(pni_object *object, bool abandon) {
   pn_casters *casters = (pn_casters *)object;
   pni_gpu *gpu = gpu_of(casters);
   for (int i = 0; i < casters->mesh_count; i++) pni_mesh_drop(gpu, &casters->meshes[i], abandon);
   pni_free(gpu, casters->meshes);
   pni_free(gpu, casters->instances);
-  pni_object_unlink(&casters->object);
-  pni_free(gpu, casters);
 }
 
 pn_result pn_casters_create(pn_context *context, pn_casters **out) {
   if (!context) return PN_ERROR_ARGUMENT;
   if (!out)
     return pni_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_casters_create: out is NULL");
-  *out = pni_object_create(context, free_casters, sizeof **out);
+  *out = pni_object_create(context, release_casters, sizeof **out);
   return *out ? PN_OK : PN_ERROR_OUT_OF_MEMORY;
 }
 
 void pn_casters_destroy(pn_casters **casters) {
   if (!casters || !*casters) return;
-  pn_context *context = (*casters)->object.context;
-  pni_enter(context);
-  free_casters(&(*casters)->object, false);
-  pni_leave(context, PN_OK);
+  pni_object_destroy(&(*casters)->object);
   *casters = NULL;
 }
 
@@ -204,6 +200,12 @@ pn_result pn_casters_draw(pn_casters *casters, int group, pn_draw_fn draw, void 
   callback->user = user;
   if (draw) memcpy(&callback->bounds, bounds, sizeof callback->bounds);
   return PN_OK;
+}
+
+bool pni_casters_call_host(const pn_casters *casters, uint32_t groups) {
+  for (int group = 0; group < PN_GROUP_COUNT; group++)
+    if (casters->callbacks[group].draw && (groups >> group & 1)) return true;
+  return false;
 }
 
 /* ---- bounds ------------------------------------------------------------------------------------------------------ */

@@ -3,6 +3,8 @@
 #define PN_CASTERS_CASTERS_H
 
 #include "context.h"
+#include "gl/pass.h"
+#include "kept.h"
 #include "space/matrix.h"
 
 typedef struct {
@@ -12,17 +14,15 @@ typedef struct {
 /* Boxes over runs of triangles: they bound a mesh in any projection far more tightly than one box does. */
 enum { PNI_BOXES_MAX = 256, PNI_BOX_TRIANGLES = 64 };
 
-struct pni_mesh_edges; /* casters/edges.h */
-
 typedef struct pni_mesh_data {
   uint32_t id;                           /* 0: a free slot */
   pn_span positions, indices, texcoords; /* as described; data pointers are not kept */
   int index_bytes;
   uint32_t *kept_indices; /* positions and indices in memory: the mesh's triangles as described, for deformation */
   size_t kept_count;
-  pn_gl vertex_array, buffers[3]; /* positions, indices, texcoords; 0 where the host owns it */
-  size_t bytes[3];                /* in own buffers */
-  size_t draw_count;              /* vertices or indices drawn */
+  pni_vertices vertices;
+  pni_buffer own_positions, own_indices, own_texcoords; /* none where the host owns it */
+  size_t draw_count;                                    /* vertices or indices drawn */
   pn_gl alpha_texture;
   int alpha_channel;
   float alpha_cutoff;
@@ -30,7 +30,8 @@ typedef struct pni_mesh_data {
   pni_box *boxes;
   int box_count;
   size_t box_triangles; /* each box is over that many of the triangles drawn, in order; 0: it says nothing of that */
-  struct pni_mesh_edges *edges; /* NULL until a technique asks for them */
+  uint32_t pose;        /* how often its positions changed */
+  pni_kept kept;        /* by a room above: what it finds out of the triangles */
 } pni_mesh_data;
 
 typedef struct {
@@ -54,7 +55,6 @@ struct pn_casters {
   int instance_count, instance_capacity;
   uint32_t next_id;
   pni_callback callbacks[PN_GROUP_COUNT];
-  bool told_meshes; /* that some have no mesh to find edges in */
 };
 
 pni_mesh_data *pni_find_mesh(const pn_casters *casters, uint32_t id);
@@ -63,18 +63,19 @@ pni_mesh_data *pni_find_mesh(const pn_casters *casters, uint32_t id);
 typedef void (*pni_box_visitor)(void *user, const double corners[8][3]);
 void pni_casters_each_box(const pn_casters *casters, uint32_t groups, pni_box_visitor visit, void *user);
 
+/* Whether a draw callback draws any of the groups. */
+bool pni_casters_call_host(const pn_casters *casters, uint32_t groups);
+
 /* Draws all casters of groups into the pass that has begun. */
 typedef struct {
+  const pni_pass *pass; /* that one: it is taken up again after each of the host's callbacks */
   pni_matrix clip_from_scene;
   pni_matrix cull_from_scene; /* the same, or of the part of the map that counts */
   uint32_t groups;
   pn_faces faces;
-  pn_gl peel; /* the previous layer, or 0 */
-  int layer, width, height;
+  const pni_texture *peel; /* the previous layer, or NULL */
+  int layer;
 } pni_caster_draw;
 pn_result pni_casters_draw_pass(pn_casters *casters, const pni_caster_draw *draw);
-
-/* Compiles what drawing may need. */
-pn_result pni_casters_prepare(pni_gpu *gpu, bool peel);
 
 #endif

@@ -3,17 +3,11 @@
 
 #include <stdio.h>
 
-static pn_result caster_program(pni_gpu *gpu, bool alpha, bool peel, const pni_program **out) {
-  char defines[64];
-  snprintf(defines, sizeof defines, "PN_ALPHA %d\nPN_PEEL %d\n", alpha, peel);
-  pni_program_key key = {"casters/caster.vert.glsl", "casters/caster.frag.glsl", NULL, defines};
-  return pni_program_get(gpu, &key, out);
-}
+enum { DEFINES = 64 };
 
-pn_result pni_casters_prepare(pni_gpu *gpu, bool peel) {
-  const pni_program *program;
-  pn_result result = caster_program(gpu, false, peel, &program);
-  return result == PN_OK ? caster_program(gpu, true, peel, &program) : result;
+static pni_program_key caster_program(bool alpha, bool peel, char defines[DEFINES]) {
+  snprintf(defines, DEFINES, "PN_ALPHA %d\nPN_PEEL %d\n", alpha, peel);
+  return (pni_program_key){"casters/caster.vert.glsl", "casters/caster.frag.glsl", NULL, defines};
 }
 
 /* Whether all eight corners of the box lie outside the same plane of the map's frustum. The near plane does not
@@ -57,43 +51,38 @@ static size_t next_run(const pni_mesh_data *mesh, const pni_matrix *cull_from_ob
   return (end < mesh->draw_count ? end : mesh->draw_count) - *at;
 }
 
-static void draw_run(pni_gpu *gpu, const pni_mesh_data *mesh, size_t first, size_t count) {
-  if (!mesh->index_bytes) {
-    GL(gpu, DrawArrays)(GL_TRIANGLES, (GLint)first, (GLsizei)count);
-    return;
-  }
-  size_t offset = (mesh->buffers[1] ? 0 : mesh->indices.offset) + first * (size_t)mesh->index_bytes;
-  GL(gpu, DrawElements)
-  (GL_TRIANGLES, (GLsizei)count, mesh->index_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT,
-   (const void *)(uintptr_t)offset);
-}
-
 typedef struct {
   pni_matrix clip_from_object, cull_from_object;
-} mesh_matrices;
+  bool clockwise; /* as the light sees it */
+} placed;
 
-static pn_result draw_mesh(pni_gpu *gpu, const pni_mesh_data *mesh, const mesh_matrices *matrices, bool peel) {
-  size_t first = 0, count = next_run(mesh, &matrices->cull_from_object, &first);
-  if (count == 0) return PN_OK;
-  const pni_program *program;
+static pn_result begin_mesh(pni_gpu *gpu, const pni_mesh_data *mesh, const placed *p, const pni_texture *peel) {
+  char defines[DEFINES];
   bool alpha = mesh->alpha_texture != 0;
-  pn_result result = caster_program(gpu, alpha, peel, &program);
+  pni_program_key key = caster_program(alpha, peel != NULL, defines);
+  pn_result result = pni_pass_program(gpu, &key);
   if (result != PN_OK) return result;
-  GL(gpu, UseProgram)(program->id);
   float matrix[16];
-  pni_matrix_to_floats(&matrices->clip_from_object, matrix);
-  GL(gpu, UniformMatrix4fv)(pni_uniform(program, "pn_clip_from_object"), 1, GL_FALSE, matrix);
+  pni_matrix_to_floats(&p->clip_from_object, matrix);
+  pni_set_matrix4(gpu, "pn_clip_from_object", matrix);
+  if (peel) pni_set_texture(gpu, "pn_peel_map", peel);
   if (alpha) {
-    GLint channel[4] = {mesh->alpha_channel};
-    GLfloat cutoff[4] = {mesh->alpha_cutoff};
-    GL(gpu, Uniform4iv)(pni_uniform(program, "pn_alpha_channel"), 1, channel);
-    GL(gpu, Uniform4fv)(pni_uniform(program, "pn_alpha_cutoff"), 1, cutoff);
-    pni_bind_texture(gpu, PNI_UNIT_ALPHA, GL_TEXTURE_2D, mesh->alpha_texture, true);
+    pni_set_ints(gpu, "pn_alpha_channel", mesh->alpha_channel, 0, 0, 0);
+    pni_set_floats(gpu, "pn_alpha_cutoff", (const float[4]){mesh->alpha_cutoff});
+    pni_set_host_texture(gpu, "pn_alpha", mesh->alpha_texture, PNI_SAMPLE_OWN);
   }
-  GL(gpu, FrontFace)(mesh->clockwise ? GL_CW : GL_CCW);
-  GL(gpu, BindVertexArray)(mesh->vertex_array);
-  for (; count > 0; count = next_run(mesh, &matrices->cull_from_object, &first)) {
-    draw_run(gpu, mesh, first, count);
+  pni_pass_clockwise(gpu, p->clockwise);
+  return PN_OK;
+}
+
+static pn_result draw_mesh(pni_gpu *gpu, const pni_mesh_data *mesh, const placed *p, const pni_texture *peel) {
+  size_t first = 0, count = next_run(mesh, &p->cull_from_object, &first);
+  if (count == 0) return PN_OK;
+  pn_result result = begin_mesh(gpu, mesh, p, peel);
+  if (result != PN_OK) return result;
+  size_t offset = mesh->own_indices.id ? 0 : mesh->indices.offset;
+  for (; count > 0; count = next_run(mesh, &p->cull_from_object, &first)) {
+    pni_draw_vertices(gpu, &mesh->vertices, mesh->index_bytes, offset, first, count);
     first += count;
   }
   return PN_OK;
@@ -109,15 +98,14 @@ static bool mirrors(const pni_matrix *a) {
 
 static pn_result draw_meshes(pn_casters *casters, const pni_caster_draw *draw) {
   pni_gpu *gpu = &casters->object.context->gpu;
-  if (draw->peel) pni_bind_texture(gpu, PNI_UNIT_PEEL, GL_TEXTURE_2D, draw->peel, false);
   for (int i = 0; i < casters->instance_count; i++) {
     const pni_instance_data *instance = &casters->instances[i];
     if (!(draw->groups >> instance->group & 1)) continue;
-    pni_mesh_data mesh = casters->meshes[instance->mesh];
-    mesh_matrices matrices = {pni_matrix_multiply(&draw->clip_from_scene, &instance->scene_from_object),
-                              pni_matrix_multiply(&draw->cull_from_scene, &instance->scene_from_object)};
-    if (mirrors(&instance->scene_from_object)) mesh.clockwise = !mesh.clockwise;
-    pn_result result = draw_mesh(gpu, &mesh, &matrices, draw->peel != 0);
+    const pni_mesh_data *mesh = &casters->meshes[instance->mesh];
+    placed p = {pni_matrix_multiply(&draw->clip_from_scene, &instance->scene_from_object),
+                pni_matrix_multiply(&draw->cull_from_scene, &instance->scene_from_object),
+                mesh->clockwise != mirrors(&instance->scene_from_object)};
+    pn_result result = draw_mesh(gpu, mesh, &p, draw->peel);
     if (result != PN_OK) return result;
   }
   return PN_OK;
@@ -135,21 +123,32 @@ static void frustum_planes(const pni_matrix *clip, float planes[PLANES][4]) {
       planes[i][c] = (float)(clip->m[4 * c + 3] + sides[i].sign * clip->m[4 * c + sides[i].row]);
 }
 
-static void call_host(pn_casters *casters, const pni_caster_draw *draw, int group) {
+static pn_result call_host(pn_casters *casters, const pni_caster_draw *draw, int group) {
   pni_gpu *gpu = &casters->object.context->gpu;
+  const pni_callback *callback = &casters->callbacks[group];
   float matrix[16], planes[PLANES][4];
   pni_matrix_to_floats(&draw->clip_from_scene, matrix);
   frustum_planes(&draw->cull_from_scene, planes);
-  pn_caster_pass pass = {matrix,        planes[0],   PLANES,      draw->faces, draw->peel,
-                         PNI_UNIT_PEEL, draw->layer, draw->width, draw->height};
-  if (draw->peel) pni_bind_texture(gpu, PNI_UNIT_PEEL, GL_TEXTURE_2D, draw->peel, false);
-  GL(gpu, FrontFace)(GL_CCW);
-  casters->callbacks[group].draw(casters->callbacks[group].user, &pass);
+  pn_caster_pass pass = {.clip_from_scene = matrix,
+                         .planes = planes[0],
+                         .plane_count = PLANES,
+                         .faces = draw->pass->faces ? draw->pass->faces : PN_FACES_ANY,
+                         .peel_texture = draw->peel ? draw->peel->id : 0,
+                         .peel_unit = PNI_UNIT_PEEL,
+                         .layer = draw->layer,
+                         .width = draw->pass->width,
+                         .height = draw->pass->height};
+  pn_result result = pni_pass_resume(gpu, draw->pass);
+  if (result != PN_OK) return result;
+  pni_host_begin(gpu, draw->peel);
+  callback->draw(callback->user, &pass);
+  pni_host_end(gpu);
+  return PN_OK;
 }
 
 pn_result pni_casters_draw_pass(pn_casters *casters, const pni_caster_draw *draw) {
   pn_result result = draw_meshes(casters, draw);
   for (int group = 0; group < PN_GROUP_COUNT && result == PN_OK; group++)
-    if (casters->callbacks[group].draw && (draw->groups >> group & 1)) call_host(casters, draw, group);
+    if (casters->callbacks[group].draw && (draw->groups >> group & 1)) result = call_host(casters, draw, group);
   return result;
 }

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "casters/edges.h"
+#include "gl/host.h"
+#include "gl/inspect.h"
 
 /* ---- checks ------------------------------------------------------------------------------------------------------ */
 
@@ -12,19 +13,15 @@ static bool span_given(const pn_span *span) { return span->buffer || span->data;
 
 /* Whether the host's buffer is as large as the span says. */
 static bool span_inside(pni_gpu *gpu, const pn_span *span, size_t element) {
-  GLint64 bytes = 0;
   size_t stride = span->stride ? span->stride : element;
   if (!span->buffer || span->count == 0) return true;
-  GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, span->buffer);
-  GL(gpu, GetBufferParameteri64v)(GL_ARRAY_BUFFER, GL_BUFFER_SIZE, &bytes);
-  GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, 0);
-  return (uint64_t)bytes >= span->offset + (span->count - 1) * stride + element;
+  return pni_buffer_size(gpu, span->buffer) >= span->offset + (span->count - 1) * stride + element;
 }
 
 /* A span that can be read: one source, elements that fit their stride. */
 static bool span_sound(pni_gpu *gpu, const pn_span *span, size_t element) {
   if (!span->buffer == !span->data) return false;
-  if (span->buffer && !GL(gpu, IsBuffer)(span->buffer)) return false;
+  if (span->buffer && !pni_buffer_exists(gpu, span->buffer)) return false;
   if (span->stride && span->stride < element) return false;
   return span->count <= (size_t)1 << 31 && span->offset <= (size_t)1 << 40 && span->stride <= (size_t)1 << 20 &&
          span_inside(gpu, span, element);
@@ -50,7 +47,7 @@ static pn_result check_alpha(pni_gpu *gpu, const pn_mesh_desc *d) {
   if (!d->alpha_texture || !span_sound(gpu, &d->texcoords, 8) || d->texcoords.count < d->positions.count)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_TEXCOORDS,
                     "an alpha texture and two floats for each position come together");
-  if (!GL(gpu, IsTexture)(d->alpha_texture) || d->alpha_channel < 0 || d->alpha_channel > 3 ||
+  if (!pni_texture_exists(gpu, d->alpha_texture) || d->alpha_channel < 0 || d->alpha_channel > 3 ||
       !(d->alpha_cutoff >= 0) || !(d->alpha_cutoff <= 1))
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_ALPHA, "alpha: a texture, channel 0..3, cutoff in [0, 1]");
   return PN_OK;
@@ -171,52 +168,47 @@ static void box_vertices(pni_mesh_data *mesh, const pn_span *positions) {
 
 /* ---- buffers ----------------------------------------------------------------------------------------------------- */
 
-static pn_result upload(pni_gpu *gpu, pni_mesh_data *mesh, int slot, GLenum target, const void *data, size_t bytes) {
-  pn_result result = pni_memory_take(gpu, bytes);
-  if (result != PN_OK) return result;
-  if (!mesh->buffers[slot]) GL(gpu, GenBuffers)(1, &mesh->buffers[slot]);
-  GL(gpu, BindBuffer)(target, mesh->buffers[slot]);
-  GL(gpu, BufferData)(target, (GLsizeiptr)bytes, data, GL_STATIC_DRAW);
-  result = pni_memory_check(gpu, bytes);
-  pni_memory_give(gpu, result == PN_OK ? mesh->bytes[slot] : bytes);
-  if (result == PN_OK) mesh->bytes[slot] = bytes;
-  return result;
-}
-
 /* The span's elements tightly packed into a buffer of ours. */
-static pn_result upload_span(pni_gpu *gpu, pni_mesh_data *mesh, int slot, const pn_span *span, size_t element) {
+static pn_result upload_span(pni_gpu *gpu, pni_buffer *to, const char *label, const pn_span *span, size_t element) {
+  size_t bytes = span->count * element;
   if (!span->stride || span->stride == element)
-    return upload(gpu, mesh, slot, GL_ARRAY_BUFFER, span_at(span, element, 0), span->count * element);
-  char *packed = pni_reallocate(gpu, NULL, span->count * element);
+    return pni_buffer_fill(gpu, to, label, PNI_BUFFER_VERTICES, span_at(span, element, 0), bytes);
+  char *packed = pni_reallocate(gpu, NULL, bytes);
   if (!packed) return PN_ERROR_OUT_OF_MEMORY;
   for (size_t i = 0; i < span->count; i++) memcpy(packed + i * element, span_at(span, element, i), element);
-  pn_result result = upload(gpu, mesh, slot, GL_ARRAY_BUFFER, packed, span->count * element);
+  pn_result result = pni_buffer_fill(gpu, to, label, PNI_BUFFER_VERTICES, packed, bytes);
   pni_free(gpu, packed);
   return result;
 }
 
-static void point_attribute(pni_gpu *gpu, GLuint index, GLint floats, const pn_span *span, pn_gl own) {
+static void point_attribute(pni_gpu *gpu, const pni_mesh_data *mesh, int index, int floats, const pn_span *span,
+                            const pni_buffer *own) {
   size_t packed = (size_t)floats * sizeof(float);
-  size_t offset = own ? 0 : span->offset;
-  size_t stride = own || !span->stride ? packed : span->stride;
-  GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, own ? own : span->buffer);
-  GL(gpu, EnableVertexAttribArray)(index);
-  GL(gpu, VertexAttribPointer)(index, floats, GL_FLOAT, GL_FALSE, (GLsizei)stride, (const void *)(uintptr_t)offset);
+  size_t offset = own->id ? 0 : span->offset;
+  size_t stride = own->id || !span->stride ? packed : span->stride;
+  pni_vertices_attribute(gpu, &mesh->vertices, index, floats, own->id ? own->id : span->buffer, offset, stride);
 }
 
 static pn_result upload_positions(pni_gpu *gpu, pni_mesh_data *mesh, const pn_mesh_desc *d) {
   if (d->positions.data) {
-    pn_result result = upload_span(gpu, mesh, 0, &d->positions, 12);
+    pn_result result = upload_span(gpu, &mesh->own_positions, "mesh positions", &d->positions, 12);
     if (result != PN_OK) return result;
   }
-  point_attribute(gpu, 0, 3, &d->positions, mesh->buffers[0]);
+  point_attribute(gpu, mesh, 0, 3, &d->positions, &mesh->own_positions);
   if (!d->alpha_texture) return PN_OK;
   if (d->texcoords.data) {
-    pn_result result = upload_span(gpu, mesh, 2, &d->texcoords, 8);
+    pn_result result = upload_span(gpu, &mesh->own_texcoords, "mesh texture coordinates", &d->texcoords, 8);
     if (result != PN_OK) return result;
   }
-  point_attribute(gpu, 1, 2, &d->texcoords, mesh->buffers[2]);
+  point_attribute(gpu, mesh, 1, 2, &d->texcoords, &mesh->own_texcoords);
   return PN_OK;
+}
+
+static pn_result upload_indices(pni_gpu *gpu, pni_mesh_data *mesh, const uint32_t *indices, size_t count) {
+  pn_result result =
+      pni_buffer_fill(gpu, &mesh->own_indices, "mesh indices", PNI_BUFFER_INDICES, indices, count * sizeof *indices);
+  if (result == PN_OK) pni_vertices_indices(gpu, &mesh->vertices, mesh->own_indices.id);
+  return result;
 }
 
 /* Filters the kept triangles against positions, and uploads what is left. */
@@ -225,7 +217,7 @@ static pn_result upload_triangles(pni_gpu *gpu, pni_mesh_data *mesh, const pn_sp
   if (!kept) return PN_ERROR_OUT_OF_MEMORY;
   size_t count = filter_triangles(mesh, positions, kept), total = mesh->kept_count / 3;
   pn_result result = PN_OK;
-  if (count > 0) result = upload(gpu, mesh, 1, GL_ELEMENT_ARRAY_BUFFER, kept, 3 * count * sizeof *kept);
+  if (count > 0) result = upload_indices(gpu, mesh, kept, 3 * count);
   pni_free(gpu, kept);
   if (result != PN_OK) return result;
   mesh->draw_count = 3 * count;
@@ -248,17 +240,18 @@ static pn_result bind_host_indices(pni_gpu *gpu, pni_mesh_data *mesh, const pn_m
   mesh->index_bytes = d->index_bytes;
   mesh->draw_count = d->index_bytes ? d->indices.count : d->positions.count;
   if (!d->index_bytes) return PN_OK;
-  if (d->indices.data) { /* positions in a GL buffer: their values are unknown, only the count can be checked */
-    uint32_t *wide = pni_reallocate(gpu, NULL, d->indices.count * sizeof *wide);
-    if (!wide) return PN_ERROR_OUT_OF_MEMORY;
-    pn_result result = copy_indices(gpu, d, wide);
-    if (result == PN_OK) result = upload(gpu, mesh, 1, GL_ELEMENT_ARRAY_BUFFER, wide, d->indices.count * sizeof *wide);
-    pni_free(gpu, wide);
-    mesh->index_bytes = 4;
-    return result;
+  if (!d->indices.data) {
+    pni_vertices_indices(gpu, &mesh->vertices, d->indices.buffer);
+    return PN_OK;
   }
-  GL(gpu, BindBuffer)(GL_ELEMENT_ARRAY_BUFFER, d->indices.buffer);
-  return PN_OK;
+  /* positions in a GL buffer: their values are unknown, only the count can be checked */
+  uint32_t *wide = pni_reallocate(gpu, NULL, d->indices.count * sizeof *wide);
+  if (!wide) return PN_ERROR_OUT_OF_MEMORY;
+  pn_result result = copy_indices(gpu, d, wide);
+  if (result == PN_OK) result = upload_indices(gpu, mesh, wide, d->indices.count);
+  pni_free(gpu, wide);
+  mesh->index_bytes = 4;
+  return result;
 }
 
 static void describe(pni_mesh_data *mesh, const pn_mesh_desc *d) {
@@ -285,14 +278,12 @@ pn_result pni_mesh_build(pni_gpu *gpu, const pn_mesh_desc *d, pni_mesh_data *mes
   bool boxed = !equal3(d->bounds_min, d->bounds_max);
   mesh->boxes = pni_reallocate(gpu, NULL, (PNI_BOXES_MAX + 1) * sizeof *mesh->boxes);
   if (!mesh->boxes) return PN_ERROR_OUT_OF_MEMORY;
-  GL(gpu, GenVertexArrays)(1, &mesh->vertex_array);
-  GL(gpu, BindVertexArray)(mesh->vertex_array);
+  pni_vertices_make(gpu, &mesh->vertices);
   bool in_memory = d->positions.data && !d->indices.buffer;
   pn_result result = in_memory ? take_triangles(gpu, mesh, d) : bind_host_indices(gpu, mesh, d);
   if (result == PN_OK && d->positions.data && !in_memory) box_vertices(mesh, &d->positions);
   if (result == PN_OK && boxed) given_box(mesh, d->bounds_min, d->bounds_max);
   if (result == PN_OK) result = upload_positions(gpu, mesh, d);
-  GL(gpu, BindVertexArray)(0);
   if (result != PN_OK) pni_mesh_drop(gpu, mesh, false);
   return result;
 }
@@ -300,25 +291,21 @@ pn_result pni_mesh_build(pni_gpu *gpu, const pn_mesh_desc *d, pni_mesh_data *mes
 pn_result pni_mesh_deform(pni_gpu *gpu, pni_mesh_data *mesh, const pn_span *positions, const float *bounds) {
   pn_result result = PN_OK;
   if (positions) {
-    GL(gpu, BindVertexArray)(mesh->vertex_array);
     if (mesh->kept_indices) result = upload_triangles(gpu, mesh, positions);
     else box_vertices(mesh, positions);
-    if (result == PN_OK) result = upload_span(gpu, mesh, 0, positions, 12);
-    GL(gpu, BindVertexArray)(0);
+    if (result == PN_OK) result = upload_span(gpu, &mesh->own_positions, "mesh positions", positions, 12);
   }
   if (result == PN_OK && bounds) given_box(mesh, bounds, bounds + 3);
-  if (mesh->edges) mesh->edges->stale = true;
+  mesh->pose++;
   return result;
 }
 
 void pni_mesh_drop(pni_gpu *gpu, pni_mesh_data *mesh, bool abandon) {
-  pni_mesh_edges_free(gpu, &mesh->edges, abandon);
-  if (!abandon) {
-    if (mesh->vertex_array) GL(gpu, DeleteVertexArrays)(1, &mesh->vertex_array);
-    for (int i = 0; i < 3; i++)
-      if (mesh->buffers[i]) GL(gpu, DeleteBuffers)(1, &mesh->buffers[i]);
-  }
-  for (int i = 0; i < 3; i++) pni_memory_give(gpu, mesh->bytes[i]);
+  pni_kept_free(gpu, &mesh->kept, abandon);
+  pni_vertices_free(gpu, &mesh->vertices, abandon);
+  pni_buffer_free(gpu, &mesh->own_positions, abandon);
+  pni_buffer_free(gpu, &mesh->own_indices, abandon);
+  pni_buffer_free(gpu, &mesh->own_texcoords, abandon);
   pni_free(gpu, mesh->kept_indices);
   pni_free(gpu, mesh->boxes);
   memset(mesh, 0, sizeof *mesh);

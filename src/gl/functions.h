@@ -1,5 +1,6 @@
-/* Every GL function the library calls. The table holds pointers to function pointers: with libepoxy they point at its
- * lazily resolving variables, with a host's loader at the storage beside the table. Call as GL(gpu, DrawArrays)(...). */
+/* Every GL function the library calls. The table holds pointers to function pointers: with libepoxy they point at its lazily
+ * resolving variables, with a host's loader at the storage beside the table. Call as GL(gpu, DrawArrays)(...); builds with
+ * assertions count the calls. */
 #ifndef PN_GL_FUNCTIONS_H
 #define PN_GL_FUNCTIONS_H
 
@@ -128,7 +129,10 @@
   X(PFNGLDEPTHRANGEINDEXEDPROC, DepthRangeIndexed) \
   X(PFNGLSCISSORINDEXEDPROC, ScissorIndexed) \
   X(PFNGLVIEWPORTINDEXEDFPROC, ViewportIndexedf) \
-  X(PFNGLGETGRAPHICSRESETSTATUSPROC, GetGraphicsResetStatus)
+  X(PFNGLGETGRAPHICSRESETSTATUSPROC, GetGraphicsResetStatus) \
+  X(PFNGLOBJECTLABELPROC, ObjectLabel) \
+  X(PFNGLPUSHDEBUGGROUPPROC, PushDebugGroup) \
+  X(PFNGLPOPDEBUGGROUPPROC, PopDebugGroup)
 
 typedef struct {
 #define X(type, name) type *name;
@@ -143,6 +147,10 @@ typedef struct {
 #undef X
 } pni_gl_storage;
 
+#ifdef NDEBUG
 #define GL(gpu, name) (*(gpu)->gl.name)
+#else
+#define GL(gpu, name) (*((gpu)->calls += 1, (gpu)->gl.name))
+#endif
 
 #endif

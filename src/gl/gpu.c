@@ -2,57 +2,15 @@
 #include "gl/gpu.h"
 
 #include <dlfcn.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <epoxy/egl.h>
 
+#include "gl/host.h"
+#include "gl/label.h"
 #include "gl/program.h"
-
-void *pni_reallocate(pni_gpu *gpu, void *old, size_t bytes) {
-  void *memory = gpu->desc.allocate ? gpu->desc.allocate(gpu->desc.user, old, bytes) : realloc(old, bytes);
-  if (!memory && bytes)
-    pni_fail(gpu, PN_ERROR_OUT_OF_MEMORY, PN_MESSAGE_OUT_OF_MEMORY, "no memory for %zu bytes", bytes);
-  return memory;
-}
-
-void *pni_allocate_zero(pni_gpu *gpu, size_t bytes) {
-  void *memory = pni_reallocate(gpu, NULL, bytes ? bytes : 1);
-  if (memory) memset(memory, 0, bytes);
-  return memory;
-}
-
-void pni_free(pni_gpu *gpu, void *memory) {
-  if (!memory) return;
-  if (gpu->desc.allocate) gpu->desc.allocate(gpu->desc.user, memory, 0);
-  else free(memory);
-}
-
-static void send(pni_gpu *gpu, pn_log_level level, pn_message message, const char *format, va_list arguments) {
-  if (!gpu->desc.log) return;
-  char text[1024];
-  vsnprintf(text, sizeof text, format, arguments);
-  for (char *c = text; *c; c++)
-    if (*c == '\n' || *c == '\r') *c = ' '; /* one line, whatever a driver wrote */
-  gpu->desc.log(gpu->desc.user, level, (int)message, text);
-}
-
-pn_result pni_fail(pni_gpu *gpu, pn_result result, pn_message message, const char *format, ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  send(gpu, PN_LOG_ERROR, message, format, arguments);
-  va_end(arguments);
-  return result;
-}
-
-void pni_note(pni_gpu *gpu, pn_log_level level, pn_message message, const char *format, ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  send(gpu, level, message, format, arguments);
-  va_end(arguments);
-}
 
 static void use_epoxy(pni_gpu *gpu) {
 #define X(type, name) gpu->gl.name = &epoxy_gl##name;
@@ -112,6 +70,10 @@ static void read_capabilities(pni_gpu *gpu) {
   can->blend_buffers = function && can->version >= 40;
   function = !gpu->desc.get_proc_address || gpu->storage.DrawArraysIndirect;
   can->indirect = function && (can->version >= 40 || has_extension(gpu, "GL_ARB_draw_indirect"));
+  function = !gpu->desc.get_proc_address ||
+             (gpu->storage.ObjectLabel && gpu->storage.PushDebugGroup && gpu->storage.PopDebugGroup);
+  can->labels = function && (can->version >= 43 || has_extension(gpu, "GL_KHR_debug"));
+  if (can->labels) GL(gpu, GetIntegerv)(GL_MAX_DEBUG_GROUP_STACK_DEPTH, &can->debug_groups);
   can->float_blend = true;
   can->fixed_restart = can->version >= 43;
   GL(gpu, GetIntegerv)(GL_MAX_TEXTURE_SIZE, &can->texture_size_max);
@@ -119,6 +81,9 @@ static void read_capabilities(pni_gpu *gpu) {
   GL(gpu, GetIntegerv)(GL_MAX_DRAW_BUFFERS, &can->draw_buffers);
   GL(gpu, GetIntegerv)(GL_SUBPIXEL_BITS, &can->subpixel_bits);
   GL(gpu, GetIntegerv)(GL_MAX_CLIP_DISTANCES, &can->clip_distances);
+  /* More of these than every device has are left alone. */
+  if (can->draw_buffers > PNI_DRAW_BUFFERS_SAVED) can->draw_buffers = PNI_DRAW_BUFFERS_SAVED;
+  if (can->clip_distances > PNI_CLIP_DISTANCES_SAVED) can->clip_distances = PNI_CLIP_DISTANCES_SAVED;
   GL(gpu, GetIntegerv)(GL_MAX_SAMPLE_MASK_WORDS, &can->sample_mask_words);
 }
 
@@ -203,6 +168,7 @@ pn_result pni_gpu_open(pni_gpu *gpu, const pn_context_desc *desc) {
   if (result != PN_OK) return result;
   read_capabilities(gpu);
   make_shared_objects(gpu);
+  pni_find_group_room(gpu);
   return PN_OK;
 }
 
@@ -220,4 +186,10 @@ void pni_gpu_close(pni_gpu *gpu, bool abandon) {
 pn_result pni_gpu_check_lost(pni_gpu *gpu) {
   if (!gpu->can.robustness || GL(gpu, GetGraphicsResetStatus)() == GL_NO_ERROR) return PN_OK;
   return pni_fail(gpu, PN_ERROR_CONTEXT_LOST, PN_MESSAGE_GL_LOST, "the GL context was reset");
+}
+
+void pni_gpu_names(pni_gpu *gpu, const char **vendor, const char **renderer, const char **version) {
+  *vendor = (const char *)GL(gpu, GetString)(GL_VENDOR);
+  *renderer = (const char *)GL(gpu, GetString)(GL_RENDERER);
+  *version = (const char *)GL(gpu, GetString)(GL_VERSION);
 }

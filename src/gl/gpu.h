@@ -1,25 +1,19 @@
-/* The GL context as the library sees it: functions, capabilities, memory, messages. Everything above holds a pni_gpu. */
-#ifndef PN_GL_GPU_H
-#define PN_GL_GPU_H
+/* The GL context as the library sees it: functions, capabilities, what is bound. Everything above holds a pni_gpu. */
+#ifndef PNI_GL_GPU_H
+#define PNI_GL_GPU_H
 
 #include <stdbool.h>
 #include <penumbra/penumbra.h>
 #include "gl/functions.h"
 
-/* Texture units the library uses, from 0. State saving covers exactly these. */
+/* Texture units the library uses, from 0: state saving covers exactly these. A program's samplers take them in the order in
+ * which the compiler lists them. */
 enum {
-  PNI_UNIT_MAPS = 0, /* the light's depth maps */
-  PNI_UNIT_RANGE,    /* the light's range pyramid */
-  PNI_UNIT_DEPTH,    /* the receiver's depth */
-  PNI_UNIT_NORMAL,
-  PNI_UNIT_MASK,
-  PNI_UNIT_WORK, /* whatever a technique keeps between its passes */
-  PNI_UNIT_PEEL,
-  PNI_UNIT_ALPHA,
-  PNI_UNIT_SEEN,       /* the receiver map */
-  PNI_UNIT_SEEN_RANGE, /* its range pyramid */
-  PNI_UNIT_COUNT
+  PNI_UNITS = 12,
+  PNI_UNIT_SCRATCH = PNI_UNITS - 1, /* for looking at textures and filling them: no sampler's */
+  PNI_UNIT_PEEL = 6                 /* what a host's draw callback finds the previous layer on */
 };
+enum { PNI_DRAW_BUFFERS_SAVED = 8, PNI_CLIP_DISTANCES_SAVED = 8 };
 
 typedef struct {
   int version; /* 33, 45, 46 */
@@ -32,14 +26,44 @@ typedef struct {
   bool blend_buffers; /* 4.0: each draw buffer has its own blend function */
   bool indirect;      /* 4.0 or ARB_draw_indirect: draws whose counts lie in a buffer */
   bool fixed_restart; /* GL_PRIMITIVE_RESTART_FIXED_INDEX, 4.3 */
-  int texture_size_max, layers_max, draw_buffers, subpixel_bits, clip_distances, sample_mask_words;
+  bool labels;        /* 4.3 or KHR_debug: objects and passes have names */
+  int texture_size_max, layers_max, draw_buffers, subpixel_bits, clip_distances, sample_mask_words, debug_groups;
 } pni_capabilities;
 
 typedef struct pni_program pni_program;
 
+/* What a pass does with what its first colour image holds; the other images are never blended. */
+typedef enum { PNI_BLEND_NONE = 0, PNI_BLEND_ADD, PNI_BLEND_MIN } pni_blend;
+
+/* One image to draw into: level 0.. of a texture, and a layer when it is an array. */
+typedef struct {
+  pn_gl texture; /* 0: none */
+  bool array;
+  int level, layer;
+} pni_image;
+
+/* GL's state as far as the library sets it, so that nothing is set twice (gl/bound.c). */
+typedef struct {
+  bool known; /* false: the host was here, nothing below can be relied on */
+  pn_gl program, vertex_array, framebuffer, read_framebuffer, block;
+  int active_unit;
+  pn_gl texture[PNI_UNITS], sampler[PNI_UNITS];
+  GLenum target[PNI_UNITS];
+  pni_image color[2], depth;
+  bool attached;                            /* color and depth are what the framebuffer has */
+  int viewport[4], scissor[4], channels[2]; /* channels: bits of the colour mask, for each image */
+  bool depth_test, depth_write, depth_clamp, scissor_test, cull, clockwise, point_size;
+  pn_faces culled;
+  GLenum depth_func;
+  double depth_range[2];
+  pni_blend blend;
+  bool group; /* a debug group of the library's is open */
+} pni_bound;
+
 typedef struct pni_gpu {
   pni_gl_table gl;
   pni_gl_storage storage;
+  size_t calls; /* of GL, so far; counted in builds with assertions */
   pni_capabilities can;
   pn_context_desc desc; /* the host's callbacks */
   char *shader_directory;
@@ -52,7 +76,13 @@ typedef struct pni_gpu {
   pn_gl framebuffer;  /* the one the passes draw to */
   pn_gl read_framebuffer;
   pn_gl sampler_nearest; /* no filtering, clamped, no comparison */
+  bool labelled;         /* these four are */
+  bool group_room;       /* for a debug group beside the host's */
   pni_program *programs;
+
+  pni_bound bound;
+  const pni_program *program; /* of the pass that has begun */
+  uint32_t textures_set;      /* its samplers that were given a texture */
 } pni_gpu;
 
 /* Finds functions and capabilities and makes the shared objects. On failure everything is undone. */
@@ -63,15 +93,7 @@ void pni_gpu_close(pni_gpu *gpu, bool abandon);
 /* PN_ERROR_CONTEXT_LOST, with a message, when the GL context was reset, as far as the device tells. */
 pn_result pni_gpu_check_lost(pni_gpu *gpu);
 
-/* Memory from the host's allocator. */
-void *pni_reallocate(pni_gpu *gpu, void *old, size_t bytes); /* NULL when out of memory, after a message */
-void *pni_allocate_zero(pni_gpu *gpu, size_t bytes);
-void pni_free(pni_gpu *gpu, void *memory);
-
-/* Sends a message to the host. Returns result, so that a failure is one line: return pni_fail(...). */
-pn_result pni_fail(pni_gpu *gpu, pn_result result, pn_message message, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-void pni_note(pni_gpu *gpu, pn_log_level level, pn_message message, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+/* GL's own strings, valid as long as the context. */
+void pni_gpu_names(pni_gpu *gpu, const char **vendor, const char **renderer, const char **version);
 
 #endif

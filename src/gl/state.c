@@ -1,86 +1,7 @@
 #include "gl/state.h"
 
-/* Capabilities without an index. GL_DITHER is the only one that is on by default here; multisampling is of no effect
- * in the single-sample targets the library draws to. */
-static const GLenum switches[] = {
-    GL_SCISSOR_TEST,
-    GL_STENCIL_TEST,
-    GL_DEPTH_TEST,
-    GL_CULL_FACE,
-    GL_POLYGON_OFFSET_FILL,
-    GL_COLOR_LOGIC_OP,
-    GL_RASTERIZER_DISCARD,
-    GL_SAMPLE_ALPHA_TO_COVERAGE,
-    GL_SAMPLE_COVERAGE,
-    GL_SAMPLE_MASK,
-    GL_PRIMITIVE_RESTART,
-    GL_FRAMEBUFFER_SRGB,
-    GL_DITHER,
-    GL_DEPTH_CLAMP,
-    GL_SAMPLE_ALPHA_TO_ONE,
-    GL_PROGRAM_POINT_SIZE,
-    GL_PRIMITIVE_RESTART_FIXED_INDEX, /* 4.3: last, so that older contexts leave it out */
-};
-enum { SWITCH_COUNT = sizeof switches / sizeof *switches };
-_Static_assert((int)SWITCH_COUNT == (int)PNI_SWITCHES, "pn_gl_state.enabled has one entry for each switch");
-
-enum { PIXEL_NAMES = 5 };
-static const GLenum pack_names[PIXEL_NAMES] = {GL_PACK_ALIGNMENT, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
-                                               GL_PACK_SKIP_PIXELS, GL_PACK_SWAP_BYTES};
-static const GLenum unpack_names[PIXEL_NAMES] = {GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS,
-                                                 GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SWAP_BYTES};
-static const GLint pixel_defaults[PIXEL_NAMES] = {4, 0, 0, 0, 0};
-
-static int least(int a, int b) { return a < b ? a : b; }
-static int switch_count(const pni_gpu *gpu) { return gpu->can.fixed_restart ? SWITCH_COUNT : SWITCH_COUNT - 1; }
-static int draw_buffers(const pni_gpu *gpu) { return least(gpu->can.draw_buffers, PNI_DRAW_BUFFERS_SAVED); }
-static int clip_distances(const pni_gpu *gpu) { return least(gpu->can.clip_distances, PNI_CLIP_DISTANCES_SAVED); }
-
-void pni_set_viewport(pni_gpu *gpu, int x, int y, int width, int height) {
-  if (gpu->can.viewports) GL(gpu, ViewportIndexedf)(0, (GLfloat)x, (GLfloat)y, (GLfloat)width, (GLfloat)height);
-  else GL(gpu, Viewport)(x, y, width, height);
-}
-
-void pni_set_depth_range(pni_gpu *gpu, double near, double far) {
-  if (gpu->can.viewports) GL(gpu, DepthRangeIndexed)(0, near, far);
-  else GL(gpu, DepthRange)(near, far);
-}
-
-void pni_set_scissor(pni_gpu *gpu, int x, int y, int width, int height) {
-  if (gpu->can.viewports) GL(gpu, ScissorIndexed)(0, x, y, width, height);
-  else GL(gpu, Scissor)(x, y, width, height);
-}
-
-void pni_set_switch(pni_gpu *gpu, GLenum name, bool on) {
-  bool indexed = gpu->can.viewports && name == GL_SCISSOR_TEST;
-  if (indexed && on) GL(gpu, Enablei)(name, 0);
-  else if (indexed) GL(gpu, Disablei)(name, 0);
-  else if (on) GL(gpu, Enable)(name);
-  else GL(gpu, Disable)(name);
-}
-
-/* Blend functions of draw buffer 0 only, where each has its own (4.0). */
-static void set_blend_functions(pni_gpu *gpu, const GLint equation[2], const GLint function[4]) {
-  const GLenum e[2] = {(GLenum)equation[0], (GLenum)equation[1]};
-  const GLenum f[4] = {(GLenum)function[0], (GLenum)function[1], (GLenum)function[2], (GLenum)function[3]};
-  if (gpu->can.blend_buffers) {
-    GL(gpu, BlendEquationSeparatei)(0, e[0], e[1]);
-    GL(gpu, BlendFuncSeparatei)(0, f[0], f[1], f[2], f[3]);
-  } else {
-    GL(gpu, BlendEquationSeparate)(e[0], e[1]);
-    GL(gpu, BlendFuncSeparate)(f[0], f[1], f[2], f[3]);
-  }
-}
-
-void pni_set_blend(pni_gpu *gpu, pni_blend blend) {
-  if (blend == PNI_BLEND_NONE) {
-    GL(gpu, Disablei)(GL_BLEND, 0);
-    return;
-  }
-  GLint equation = blend == PNI_BLEND_MIN ? GL_MIN : GL_FUNC_ADD;
-  set_blend_functions(gpu, (GLint[2]){equation, equation}, (GLint[4]){GL_ONE, GL_ONE, GL_ONE, GL_ONE});
-  GL(gpu, Enablei)(GL_BLEND, 0);
-}
+#include "gl/bound.h"
+#include "gl/label.h"
 
 static void save_blend_functions(pni_gpu *gpu, pni_gl_state *state) {
   static const GLenum names[6] = {GL_BLEND_EQUATION_RGB, GL_BLEND_EQUATION_ALPHA, GL_BLEND_SRC_RGB,
@@ -109,7 +30,7 @@ static void save_bindings(pni_gpu *gpu, pni_gl_state *state) {
 
 static void save_textures(pni_gpu *gpu, pni_gl_state *state) {
   GL(gpu, GetIntegerv)(GL_ACTIVE_TEXTURE, &state->active_texture);
-  for (int unit = 0; unit < PNI_UNIT_COUNT; unit++) {
+  for (int unit = 0; unit < PNI_UNITS; unit++) {
     GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);
     GL(gpu, GetIntegerv)(GL_TEXTURE_BINDING_2D, &state->texture_2d[unit]);
     GL(gpu, GetIntegerv)(GL_TEXTURE_BINDING_2D_ARRAY, &state->texture_array[unit]);
@@ -136,22 +57,23 @@ static void save_raster(pni_gpu *gpu, pni_gl_state *state) {
     GL(gpu, GetIntegerv)(GL_CLIP_ORIGIN, &state->clip_origin);
     GL(gpu, GetIntegerv)(GL_CLIP_DEPTH_MODE, &state->clip_depth);
   }
-  for (int i = 0; i < draw_buffers(gpu); i++) {
+  for (int i = 0; i < gpu->can.draw_buffers; i++) {
     GL(gpu, GetBooleani_v)(GL_COLOR_WRITEMASK, (GLuint)i, state->color_mask[i]);
     state->blend[i] = GL(gpu, IsEnabledi)(GL_BLEND, (GLuint)i);
   }
   save_blend_functions(gpu, state);
-  for (int i = 0; i < clip_distances(gpu); i++) state->clip[i] = GL(gpu, IsEnabled)(GL_CLIP_DISTANCE0 + (GLenum)i);
-  for (int i = 0; i < switch_count(gpu); i++) state->enabled[i] = GL(gpu, IsEnabled)(switches[i]);
+  for (int i = 0; i < gpu->can.clip_distances; i++) state->clip[i] = GL(gpu, IsEnabled)(GL_CLIP_DISTANCE0 + (GLenum)i);
+  for (int i = 0; i < pni_switch_count(gpu); i++) state->enabled[i] = GL(gpu, IsEnabled)(pni_switches[i]);
 }
 
 void pni_state_save(pni_gpu *gpu, pni_gl_state *state) {
+  pni_find_group_room(gpu);
   save_bindings(gpu, state);
   save_textures(gpu, state);
   save_raster(gpu, state);
-  for (int i = 0; i < PIXEL_NAMES; i++) {
-    GL(gpu, GetIntegerv)(pack_names[i], &state->pack[i]);
-    GL(gpu, GetIntegerv)(unpack_names[i], &state->unpack[i]);
+  for (int i = 0; i < PNI_PIXEL_NAMES; i++) {
+    GL(gpu, GetIntegerv)(pni_pack_names[i], &state->pack[i]);
+    GL(gpu, GetIntegerv)(pni_unpack_names[i], &state->unpack[i]);
   }
 }
 
@@ -177,7 +99,7 @@ static GLuint living(pni_gpu *gpu, GLint texture) {
 }
 
 static void restore_textures(pni_gpu *gpu, const pni_gl_state *state) {
-  for (int unit = 0; unit < PNI_UNIT_COUNT; unit++) {
+  for (int unit = 0; unit < PNI_UNITS; unit++) {
     GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);
     GL(gpu, BindTexture)(GL_TEXTURE_2D, living(gpu, state->texture_2d[unit]));
     GL(gpu, BindTexture)(GL_TEXTURE_2D_ARRAY, living(gpu, state->texture_array[unit]));
@@ -188,9 +110,9 @@ static void restore_textures(pni_gpu *gpu, const pni_gl_state *state) {
 }
 
 static void restore_raster(pni_gpu *gpu, const pni_gl_state *state) {
-  pni_set_scissor(gpu, state->scissor[0], state->scissor[1], state->scissor[2], state->scissor[3]);
+  pni_scissor(gpu, state->scissor);
   GL(gpu, ClampColor)(GL_CLAMP_READ_COLOR, (GLenum)state->clamp_read);
-  pni_set_viewport(gpu, state->viewport[0], state->viewport[1], state->viewport[2], state->viewport[3]);
+  pni_viewport(gpu, state->viewport);
   GL(gpu, DepthFunc)((GLenum)state->depth_func);
   GL(gpu, CullFace)((GLenum)state->cull_face);
   GL(gpu, FrontFace)((GLenum)state->front_face);
@@ -202,69 +124,43 @@ static void restore_raster(pni_gpu *gpu, const pni_gl_state *state) {
     GL(gpu, PolygonMode)(GL_FRONT_AND_BACK, (GLenum)state->polygon_mode[0]);
   }
   GL(gpu, DepthMask)(state->depth_mask);
-  pni_set_depth_range(gpu, state->depth_range[0], state->depth_range[1]);
+  pni_depth_range(gpu, state->depth_range[0], state->depth_range[1]);
   GL(gpu, ClearDepth)(state->clear_depth);
   if (gpu->can.clip_control) GL(gpu, ClipControl)((GLenum)state->clip_origin, (GLenum)state->clip_depth);
-  for (int i = 0; i < draw_buffers(gpu); i++) {
+  for (int i = 0; i < gpu->can.draw_buffers; i++) {
     const GLboolean *mask = state->color_mask[i];
     GL(gpu, ColorMaski)((GLuint)i, mask[0], mask[1], mask[2], mask[3]);
     if (state->blend[i]) GL(gpu, Enablei)(GL_BLEND, (GLuint)i);
     else GL(gpu, Disablei)(GL_BLEND, (GLuint)i);
   }
-  set_blend_functions(gpu, state->blend_equation, state->blend_function);
-  for (int i = 0; i < clip_distances(gpu); i++) pni_set_switch(gpu, GL_CLIP_DISTANCE0 + (GLenum)i, state->clip[i]);
-  for (int i = 0; i < switch_count(gpu); i++) pni_set_switch(gpu, switches[i], state->enabled[i]);
+  pni_blend_functions(gpu, state->blend_equation, state->blend_function);
+  for (int i = 0; i < gpu->can.clip_distances; i++) pni_switch(gpu, GL_CLIP_DISTANCE0 + (GLenum)i, state->clip[i]);
+  for (int i = 0; i < pni_switch_count(gpu); i++) pni_switch(gpu, pni_switches[i], state->enabled[i]);
 }
 
 void pni_state_restore(pni_gpu *gpu, const pni_gl_state *state) {
   restore_bindings(gpu, state);
   restore_textures(gpu, state);
   restore_raster(gpu, state);
-  for (int i = 0; i < PIXEL_NAMES; i++) {
-    GL(gpu, PixelStorei)(pack_names[i], state->pack[i]);
-    GL(gpu, PixelStorei)(unpack_names[i], state->unpack[i]);
+  for (int i = 0; i < PNI_PIXEL_NAMES; i++) {
+    GL(gpu, PixelStorei)(pni_pack_names[i], state->pack[i]);
+    GL(gpu, PixelStorei)(pni_unpack_names[i], state->unpack[i]);
   }
-}
-
-static void reset_pixels(pni_gpu *gpu) {
-  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
-  GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, 0);
-  for (int i = 0; i < PIXEL_NAMES; i++) {
-    GL(gpu, PixelStorei)(pack_names[i], pixel_defaults[i]);
-    GL(gpu, PixelStorei)(unpack_names[i], pixel_defaults[i]);
-  }
-}
-
-void pni_state_neutral(pni_gpu *gpu) {
-  for (int i = 0; i < switch_count(gpu); i++) pni_set_switch(gpu, switches[i], false);
-  for (int i = 0; i < clip_distances(gpu); i++) GL(gpu, Disable)(GL_CLIP_DISTANCE0 + (GLenum)i);
-  GL(gpu, Disable)(GL_BLEND);
-  GL(gpu, ColorMask)(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  GL(gpu, DepthMask)(GL_FALSE);
-  GL(gpu, DepthFunc)(GL_LESS);
-  pni_set_depth_range(gpu, 0, 1);
-  GL(gpu, ProvokingVertex)(GL_LAST_VERTEX_CONVENTION);
-  GL(gpu, ClampColor)(GL_CLAMP_READ_COLOR, GL_FIXED_ONLY);
-  GL(gpu, PolygonMode)(GL_FRONT_AND_BACK, GL_FILL);
-  GL(gpu, FrontFace)(GL_CCW);
-  GL(gpu, CullFace)(GL_BACK);
-  if (gpu->can.clip_control) GL(gpu, ClipControl)(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
-  reset_pixels(gpu);
 }
 
 void pni_state_reset(pni_gpu *gpu) {
-  pni_state_neutral(gpu);
+  pni_neutral(gpu);
   GL(gpu, Enable)(GL_DITHER);
   GL(gpu, DepthMask)(GL_TRUE);
   GL(gpu, ClearDepth)(1);
-  set_blend_functions(gpu, (GLint[2]){GL_FUNC_ADD, GL_FUNC_ADD}, (GLint[4]){GL_ONE, GL_ZERO, GL_ONE, GL_ZERO});
+  pni_blend_functions(gpu, (GLint[2]){GL_FUNC_ADD, GL_FUNC_ADD}, (GLint[4]){GL_ONE, GL_ZERO, GL_ONE, GL_ZERO});
   GL(gpu, UseProgram)(0);
   GL(gpu, BindVertexArray)(0);
   GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, 0);
   GL(gpu, BindFramebuffer)(GL_FRAMEBUFFER, 0);
   if (gpu->can.indirect) GL(gpu, BindBuffer)(GL_DRAW_INDIRECT_BUFFER, 0);
   GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PNI_BLOCK_BINDING, 0);
-  for (int unit = PNI_UNIT_COUNT; unit-- > 0;) { /* ends at unit 0, the default active one */
+  for (int unit = PNI_UNITS; unit-- > 0;) { /* ends at unit 0, the default active one */
     GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);
     GL(gpu, BindTexture)(GL_TEXTURE_2D, 0);
     GL(gpu, BindTexture)(GL_TEXTURE_2D_ARRAY, 0);

@@ -2,17 +2,15 @@
 #ifndef PN_GL_STATE_H
 #define PN_GL_STATE_H
 
-#include "gl/gpu.h"
-
-enum { PNI_DRAW_BUFFERS_SAVED = 8, PNI_CLIP_DISTANCES_SAVED = 8, PNI_SWITCHES = 17 };
+#include "gl/bound.h"
 
 typedef struct {
   GLint program, vertex_array, array_buffer, draw_framebuffer, read_framebuffer, uniform_buffer, pixel_pack,
       pixel_unpack, draw_indirect;
   GLint block_buffer; /* the indexed uniform buffer binding the library uses */
   GLint64 block_start, block_size;
-  GLint active_texture, texture_2d[PNI_UNIT_COUNT], texture_array[PNI_UNIT_COUNT], texture_multisample[PNI_UNIT_COUNT],
-      sampler[PNI_UNIT_COUNT];
+  GLint active_texture, texture_2d[PNI_UNITS], texture_array[PNI_UNITS], texture_multisample[PNI_UNITS],
+      sampler[PNI_UNITS];
   GLint viewport[4], scissor[4], clamp_read;
   GLboolean color_mask[PNI_DRAW_BUFFERS_SAVED][4], depth_mask, blend[PNI_DRAW_BUFFERS_SAVED];
   GLint blend_equation[2], blend_function[4]; /* of draw buffer 0: colour, alpha; source and destination of each */
@@ -25,25 +23,9 @@ typedef struct {
   GLboolean enabled[PNI_SWITCHES];
 } pni_gl_state;
 
-/* Viewport, depth range and switches of index 0 only: the host may use the others, and no shader of ours does. */
-void pni_set_viewport(pni_gpu *gpu, int x, int y, int width, int height);
-void pni_set_depth_range(pni_gpu *gpu, double near, double far);
-void pni_set_scissor(pni_gpu *gpu, int x, int y, int width, int height);
-void pni_set_switch(pni_gpu *gpu, GLenum name, bool on);
-/* What a pass does with what its first colour image holds; the other images are never blended. */
-typedef enum { PNI_BLEND_NONE = 0, PNI_BLEND_ADD, PNI_BLEND_MIN } pni_blend;
-void pni_set_blend(pni_gpu *gpu, pni_blend blend);
-
 void pni_state_save(pni_gpu *gpu, pni_gl_state *state);
 void pni_state_restore(pni_gpu *gpu, const pni_gl_state *state);
 /* GL's defaults for everything the library touches, except the viewport, which has none. */
 void pni_state_reset(pni_gpu *gpu);
-
-/* Switches off everything that could change what a pass of the library draws: whatever the host, or its draw
- * callback, left on. */
-void pni_state_neutral(pni_gpu *gpu);
-
-/* The indexed binding of the uniform block that the library's own passes use. */
-enum { PNI_BLOCK_BINDING = 0 };
 
 #endif

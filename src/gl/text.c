@@ -1,5 +1,7 @@
 #include "gl/text.h"
 
+#include "gl/host.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>

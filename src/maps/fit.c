@@ -22,6 +22,8 @@ typedef struct {
   double least[3], most[3]; /* of the casters that count, (s', t', w) */
 } fitting;
 
+static bool is_parallel(const pni_fit_request *request) { return request->frame->projection == PNI_PARALLEL; }
+
 static void to_light(const fitting *f, const double corners[8][3], double out[8][3]) {
   for (int i = 0; i < 8; i++) pni_matrix_point(&f->light_from_scene, corners[i], out[i]);
 }
@@ -31,7 +33,7 @@ static void to_light(const fitting *f, const double corners[8][3], double out[8]
 static bool too_far(const fitting *f, const double p[8][3]) {
   double range = f->request->range, least = INFINITY;
   for (int i = 0; i < 8; i++) least = fmin(least, p[i][2]);
-  return range > 0 && !f->request->frame->sun && least > range;
+  return range > 0 && !is_parallel(f->request) && least > range;
 }
 
 static void look_at_distance(void *user, const double corners[8][3]) {
@@ -51,9 +53,9 @@ typedef struct {
 
 static void span_add(span3 *span, const fitting *f, const double p[3]) {
   double m[3];
-  pni_map_point(p, f->request->frame->sun, m);
+  pni_map_point(p, f->request->frame->projection, m);
   for (int i = 0; i < 2; i++) m[i] -= f->request->shear[i] * m[2];
-  if (!f->request->frame->sun) m[2] = fmin(m[2], 1 / f->z_floor);
+  if (!is_parallel(f->request)) m[2] = fmin(m[2], 1 / f->z_floor);
   for (int i = 0; i < 3; i++) {
     span->least[i] = fmin(span->least[i], m[i]);
     span->most[i] = fmax(span->most[i], m[i]);
@@ -65,7 +67,7 @@ static void span_add(span3 *span, const fitting *f, const double p[3]) {
  * that altogether has its own plane, as close to its farthest corner in proportion. */
 static span3 box_span(const fitting *f, const double p[8][3]) {
   span3 span = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, false};
-  bool sun = f->request->frame->sun;
+  bool sun = is_parallel(f->request);
   double farthest = 0, plane = f->z_cut;
   for (int i = 0; i < 8; i++) farthest = fmax(farthest, p[i][2]);
   if (farthest <= plane) plane = nearest_share * farthest;
@@ -95,7 +97,7 @@ static bool cut_to_visible(const fitting *f, span3 *span) {
   for (int i = 0; i < 2; i++) {
     double shear = f->request->shear[i];
     /* a sheared map lies within the light's reach too */
-    double grow = (f->request->frame->extent[i] + fabs(shear)) * reach;
+    double grow = (f->request->emission->extent[i] + fabs(shear)) * reach;
     double low = fmin(visible->least[i] - shear * visible->least[2], visible->least[i] - shear * visible->most[2]);
     double high = fmax(visible->most[i] - shear * visible->least[2], visible->most[i] - shear * visible->most[2]);
     span->least[i] = fmax(span->least[i], low - grow);
@@ -160,7 +162,7 @@ static double snap_distance(double z, bool up) {
 /* w_near above, w_far strictly below every caster. */
 static void snap_depth(const fitting *f, pni_fit_result *out) {
   double w_low = f->least[2], w_high = f->most[2];
-  if (f->request->frame->sun) {
+  if (is_parallel(f->request)) {
     double extent = fmax(w_high - w_low, 1e-6 * (fabs(w_high) + fabs(w_low)) + 1e-30),
            step = snap_step(w_high - extent, w_high);
     out->w_near = (ceil(w_high / step) + 1) * step;
@@ -195,7 +197,7 @@ static double tile_edge(double low, double high, int i, int count) {
 
 static void make_tiles(const pni_fit_request *request, pni_fit_result *out) {
   const double *b = out->bounds;
-  bool split = !request->frame->sun && !request->given;
+  bool split = !is_parallel(request) && !request->given;
   int columns = split ? tiles_along(b[0], b[2]) : 1, rows = split ? tiles_along(b[1], b[3]) : 1;
   out->tiles = columns * rows;
   for (int i = 0; i < out->tiles; i++) {
@@ -219,10 +221,10 @@ static void make_tiles(const pni_fit_request *request, pni_fit_result *out) {
 static double least_receiver(const fitting *f) {
   const pni_fit_request *r = f->request;
   double w = r->visible ? r->visible->least[2] : -INFINITY;
-  if (!r->frame->sun) return fmin(fmax(w, 0), f->most[2]);
+  if (!is_parallel(r)) return fmin(fmax(w, 0), f->most[2]);
   double wide = fmax(f->most[0] - f->least[0], f->most[1] - f->least[1]);
-  double behind = wide * fmax(4, 0.25 / fmax(r->frame->extent[0], r->frame->extent[1]));
-  return fmin(w > -1e29 ? w : f->least[2] - behind, f->most[2]);
+  double behind = wide * fmax(4, 0.25 / fmax(r->emission->extent[0], r->emission->extent[1]));
+  return fmin(!pni_is_nothing(w) ? w : f->least[2] - behind, f->most[2]);
 }
 
 /* Around the casters by their longest shadow, and of that what visible receivers can ask for. */
@@ -230,7 +232,7 @@ static bool extend_to_reach(fitting *f, pni_fit_result *out) {
   const pni_fit_request *r = f->request;
   out->w_reach = least_receiver(f);
   for (int i = 0; i < 2; i++) {
-    double grow = r->reach_width > 0 ? r->reach_width : r->frame->extent[i] * (f->most[2] - out->w_reach);
+    double grow = r->reach_width > 0 ? r->reach_width : r->emission->extent[i] * (f->most[2] - out->w_reach);
     f->least[i] -= grow;
     f->most[i] += grow;
     if (!r->visible) continue;
@@ -253,7 +255,7 @@ static void widen_flat(double *low, double *high, double other_extent) {
 /* Whether anything was cut off. */
 static bool clamp_opening(const fitting *f, pni_fit_result *out) {
   bool cut = false;
-  for (int i = 0; i < 4 && !f->request->frame->sun; i++) {
+  for (int i = 0; i < 4 && !is_parallel(f->request); i++) {
     double clamped = fmin(fmax(out->bounds[i], -PNI_TANGENT_MAX), PNI_TANGENT_MAX);
     cut = cut || clamped != out->bounds[i];
     out->bounds[i] = clamped;
@@ -299,7 +301,7 @@ pni_part pni_fit_focus(const pni_fit_request *request, const pni_fit_result *fit
   int texels[2] = {request->width, request->height}, low[2], high[2];
   for (int i = 0; i < 2; i++) {
     double least = fit->bounds[i], most = fit->bounds[i + 2], half = 0.5 * share * (most - least);
-    double middle = request->frame->sun ? 0.5 * (least + most) : fmin(fmax(0, least + half), most - half);
+    double middle = is_parallel(request) ? 0.5 * (least + most) : fmin(fmax(0, least + half), most - half);
     double from = fit->tile[tile][i], to_texel = texels[i] / (fit->tile[tile][i + 2] - from);
     low[i] = (int)fmin(fmax(floor((middle - half - from) * to_texel), 0), texels[i]);
     high[i] = (int)fmin(fmax(ceil((middle + half - from) * to_texel), low[i]), texels[i]);

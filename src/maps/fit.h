@@ -1,10 +1,10 @@
 /* Which part of light map space a light's maps cover: fitted to what casts, snapped, and split into tiles where the
  * light sees too wide. docs/space.md explains the steps. */
-#ifndef PN_MAPS_FIT_H
-#define PN_MAPS_FIT_H
+#ifndef PNI_MAPS_FIT_H
+#define PNI_MAPS_FIT_H
 
 #include "casters/casters.h"
-#include "gl/target.h"
+#include "gl/pass.h"
 #include "space/region.h"
 
 enum { PNI_TILES_MAX = 9 };
@@ -21,6 +21,7 @@ typedef struct {
 
 typedef struct {
   const pni_frame *frame;
+  const pni_emission *emission;
   double shear[2]; /* the light's point the map is drawn from, for both kinds of light */
   double near_distance, range;
   int width, height;

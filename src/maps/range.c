@@ -1,5 +1,4 @@
-/* Largest and smallest w of neighbourhoods of every layer: the range pyramid and the range stack. */
-#include "maps/maps.h"
+#include "maps/range.h"
 
 #include <stdio.h>
 
@@ -25,60 +24,34 @@ pn_result pni_range_shape(pni_gpu *gpu, pni_texture *texture, const pni_range_ki
                           int height) {
   if (kind->structure == PNI_RANGE_PYRAMID) {
     int w = power_above(width), h = power_above(height);
-    GLenum format = kind->least_there ? GL_RGBA32F : GL_RG32F;
-    return pni_texture_shape(gpu, texture, format, w, h, layers, level_count(larger(w, h)));
+    pni_format format = kind->least_there ? PNI_RGBA32F : PNI_RG32F;
+    return pni_texture_shape(gpu, texture, "range pyramid", format, w, h, layers, level_count(larger(w, h)));
   }
   if (kind->structure == PNI_RANGE_STACK)
-    return pni_texture_shape(gpu, texture, GL_RG32F, width, height,
+    return pni_texture_shape(gpu, texture, "range stack", PNI_RG32F, width, height,
                              layers * level_count(power_above(larger(width, height))), 1);
-  if (kind->structure != PNI_RANGE_OWN) pni_texture_free(gpu, texture, false);
+  pni_texture_free(gpu, texture, false);
   return PN_OK;
 }
 
-static pn_result range_program(pni_gpu *gpu, const pni_range_kind *kind, bool first, const pni_program **out) {
-  char defines[64];
-  snprintf(defines, sizeof defines, "PN_FIRST %d\nPN_STACK %d\nPN_QUADS %d\n", first,
-           kind->structure == PNI_RANGE_STACK, kind->quads);
-  pni_program_key key = {"shaders/screen.vert.glsl", "maps/range.frag.glsl", NULL, defines};
-  return pni_program_get(gpu, &key, out);
-}
+/* ---- passes ------------------------------------------------------------------------------------------------------ */
 
-pn_result pni_range_prepare(pni_gpu *gpu, const pni_range_kind *kind) {
-  const pni_program *program;
-  pn_result result = PN_OK;
-  for (int first = 0; first < 2 && result == PN_OK && kind->structure; first++)
-    result = range_program(gpu,
-                           &(pni_range_kind){.structure = kind->structure,
-                                             .quads = kind->quads && (first || kind->structure == PNI_RANGE_STACK)},
-                           first, &program);
-  return result;
-}
+static const float nothing[4] = {PNI_NOTHING, PNI_NOTHING, PNI_EVERYTHING, 1};
 
-/* ---- drawing ----------------------------------------------------------------------------------------------------- */
+enum { DEFINES = 64 };
 
-typedef struct {
-  pni_gpu *gpu;
-  pni_maps *maps;
-  int layer, level; /* of the depth maps' array; of pyramid or stack */
-} range_step;
-
-static pn_result begin(const range_step *s, pni_attachment target, int width, int height, const pni_program **program) {
-  pn_result result = range_program(s->gpu, &s->maps->want.range, s->level == 0, program);
-  if (result != PN_OK) return result;
-  pni_pass pass = {.color = {target}, .width = width, .height = height};
-  result = pni_screen_begin(s->gpu, &pass, *program);
-  if (result != PN_OK) return result;
-  GLint source[4] = {s->layer, s->level, s->layer / s->maps->layers, s->layer % s->maps->layers};
-  pni_bind_texture(s->gpu, PNI_UNIT_MAPS, s->maps->depth.target, s->maps->depth.id, false);
-  GL(s->gpu, Uniform4iv)(pni_uniform(*program, "pn_source"), 1, source);
-  return PN_OK;
+static pni_program_key range_program(const pni_range_kind *kind, bool first, char defines[DEFINES]) {
+  snprintf(defines, DEFINES, "PN_FIRST %d\nPN_STACK %d\nPN_QUADS %d\n", first, kind->structure == PNI_RANGE_STACK,
+           kind->quads);
+  return (pni_program_key){.fragment = "maps/range.frag.glsl", .defines = defines};
 }
 
 /* The part of a level that differs from 'nothing there', where the layer holds only a part of the map. Over quads the
  * texels before it see its first ones. maps NULL: all of it. */
 static pni_part part_of_level(const pni_maps *maps, int layer, int level, int width, int height) {
-  if (!maps || maps->want.focus <= 0 || layer % maps->layers == 0) return (pni_part){0, 0, width, height};
-  const pni_part *held = &maps->later[layer / maps->layers];
+  int layers = maps ? pni_want_layers(&maps->want) : 1;
+  if (!maps || maps->want.focus <= 0 || layer % layers == 0) return (pni_part){0, 0, width, height};
+  const pni_part *held = &maps->later[layer / layers];
   if (held->width == 0 || held->height == 0) return (pni_part){0};
   int before = maps->want.range.quads ? 1 : 0;
   int x = larger(held->x - before, 0) >> level, y = larger(held->y - before, 0) >> level;
@@ -86,90 +59,102 @@ static pni_part part_of_level(const pni_maps *maps, int layer, int level, int wi
   return (pni_part){x, y, last_x - x + 1, last_y - y + 1};
 }
 
-/* Draws the part, and clears the rest. */
-static void draw_part(pni_gpu *gpu, const pni_part *part, int width, int height) {
-  static const GLfloat nothing[4] = {-1e30f, -1e30f, 1e30f, 1};
-  if (part->width < width || part->height < height) {
-    GL(gpu, ClearBufferfv)(GL_COLOR, 0, nothing);
-    if (part->width == 0) return;
-    pni_pass_limit(gpu, part);
-  }
-  pni_draw_screen(gpu);
+/* A pass that draws the part, and clears the rest. */
+static pn_result begin_part(pni_gpu *gpu, pni_pass *pass, const pni_part *part) {
+  bool whole = part->width >= pass->width && part->height >= pass->height;
+  pass->clear = whole ? NULL : nothing;
+  pass->part = whole ? NULL : part;
+  return pni_pass_begin(gpu, pass);
 }
 
 /* A pyramid's level from the one below: only that one may be read, so reading and drawing never meet. The shader then
  * calls it level 0. */
 static pn_result reduce(pni_gpu *gpu, const pni_texture *range, const pni_maps *maps, int level, int layer) {
-  const pni_program *program;
-  pn_result result = range_program(gpu, &(pni_range_kind){.structure = PNI_RANGE_PYRAMID}, false, &program);
-  if (result != PN_OK) return result;
-  pni_pass pass = {.color = {{range->id, range->target, level, layer}},
+  char defines[DEFINES];
+  pni_pass pass = {.name = "range pyramid",
+                   .program = range_program(&(pni_range_kind){.structure = PNI_RANGE_PYRAMID}, false, defines),
+                   .color = {pni_image_of(range, level, layer)},
                    .width = larger(range->width >> level, 1),
                    .height = larger(range->height >> level, 1)};
-  result = pni_screen_begin(gpu, &pass, program);
-  if (result != PN_OK) return result;
-  GLint source[4] = {layer, level, 0, 0};
-  pni_bind_texture(gpu, PNI_UNIT_RANGE, range->target, range->id, true);
-  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, level - 1);
-  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, level - 1);
-  GL(gpu, Uniform4iv)(pni_uniform(program, "pn_source"), 1, source);
   pni_part part = part_of_level(maps, layer, level, pass.width, pass.height);
-  draw_part(gpu, &part, pass.width, pass.height);
+  pn_result result = begin_part(gpu, &pass, &part);
+  if (result != PN_OK || part.width == 0) return result;
+  pni_set_texture(gpu, "pn_range", range);
+  pni_set_ints(gpu, "pn_source", layer, level, 0, 0);
+  pni_draw_screen(gpu);
   return PN_OK;
 }
 
-/* maps: whose layers these are, where some may hold a part of the map only. */
 static pn_result reduce_all(pni_gpu *gpu, const pni_texture *range, const pni_maps *maps) {
   pn_result result = PN_OK;
-  for (int level = 1; level < range->levels; level++)
+  for (int level = 1; level < range->levels; level++) {
+    pni_texture_limit(gpu, range, level - 1, level - 1);
     for (int layer = 0; layer < range->layers && result == PN_OK; layer++)
       result = reduce(gpu, range, maps, level, layer);
-  pni_bind_texture(gpu, PNI_UNIT_RANGE, range->target, range->id, true);
-  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_BASE_LEVEL, 0);
-  GL(gpu, TexParameteri)(range->target, GL_TEXTURE_MAX_LEVEL, range->levels - 1);
+  }
+  pni_texture_limit(gpu, range, 0, range->levels - 1);
   return result;
 }
 
 pn_result pni_range_reduce(pni_gpu *gpu, const pni_texture *range) { return reduce_all(gpu, range, NULL); }
 
+/* ---- from depth maps --------------------------------------------------------------------------------------------- */
+
+static pn_result draw_first(pni_gpu *gpu, pni_maps *maps, int layer) {
+  const pni_texture *range = &maps->range;
+  int layers = pni_want_layers(&maps->want);
+  char defines[DEFINES];
+  pni_pass pass = {.name = "range",
+                   .program = range_program(&maps->want.range, true, defines),
+                   .color = {pni_image_of(range, 0, layer)},
+                   .width = range->width,
+                   .height = range->height};
+  pni_part part = part_of_level(maps, layer, 0, range->width, range->height);
+  pn_result result = begin_part(gpu, &pass, &part);
+  if (result != PN_OK || part.width == 0) return result;
+  pni_set_ints(gpu, "pn_source", layer, 0, layer / layers, layer % layers);
+  pni_set_texture(gpu, "pn_maps", &maps->depth);
+  pni_draw_screen(gpu);
+  return PN_OK;
+}
+
+static pn_result build_pyramid(pni_gpu *gpu, pni_maps *maps) {
+  pn_result result = PN_OK;
+  for (int layer = 0; layer < maps->range.layers && result == PN_OK; layer++) result = draw_first(gpu, maps, layer);
+  return result == PN_OK ? reduce_all(gpu, &maps->range, maps) : result;
+}
+
 /* A stack's levels are layers of one array, which GL 3.3 does not let a pass read and draw at once: each is drawn
  * aside and copied in. */
-static pn_result draw_stack(const range_step *s, const pni_texture *aside, int levels) {
-  pni_gpu *gpu = s->gpu;
-  const pni_texture *range = &s->maps->range;
-  const pni_program *program;
-  pni_attachment target = {aside->id, GL_TEXTURE_2D, 0, 0};
-  pn_result result = begin(s, target, range->width, range->height, &program);
+static pn_result draw_stack(pni_gpu *gpu, pni_maps *maps, int layer, int level, int levels) {
+  const pni_texture *range = &maps->range;
+  int layers = pni_want_layers(&maps->want);
+  char defines[DEFINES];
+  pni_pass pass = {.name = "range stack",
+                   .program = range_program(&maps->want.range, level == 0, defines),
+                   .color = {pni_image_of(&maps->aside, 0, 0)},
+                   .width = range->width,
+                   .height = range->height};
+  pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
-  GLint place[4] = {s->layer * levels + s->level - 1, s->level, 0, 0};
-  GL(gpu, Uniform4iv)(pni_uniform(program, "pn_place"), 1, place);
-  pni_bind_texture(gpu, PNI_UNIT_RANGE, range->target, range->id, false);
+  pni_set_ints(gpu, "pn_source", layer, level, layer / layers, layer % layers);
+  pni_set_ints(gpu, "pn_place", layer * levels + level - 1, level, 0, 0);
+  pni_set_texture(gpu, "pn_maps", &maps->depth);
+  pni_set_texture(gpu, "pn_range", range);
   pni_draw_screen(gpu);
-  pni_copy_to_layer(gpu, aside, range, s->layer * levels + s->level);
+  pni_copy_to_layer(gpu, &maps->aside, range, layer * levels + level);
   return PN_OK;
 }
 
 static pn_result build_stack(pni_gpu *gpu, pni_maps *maps) {
-  int levels = level_count(power_above(larger(maps->range.width, maps->range.height)));
-  pn_result result = pni_texture_shape(gpu, &maps->aside, GL_RG32F, maps->range.width, maps->range.height, 0, 1);
-  for (int layer = 0; layer < maps->range.layers / levels; layer++)
-    for (int level = 0; level < levels && result == PN_OK; level++)
-      result = draw_stack(&(range_step){gpu, maps, layer, level}, &maps->aside, levels);
-  return result;
-}
-
-static pn_result build_pyramid(pni_gpu *gpu, pni_maps *maps) {
   const pni_texture *range = &maps->range;
-  pn_result result = PN_OK;
-  for (int layer = 0; layer < range->layers && result == PN_OK; layer++) {
-    const pni_program *program;
-    pni_attachment target = {range->id, range->target, 0, layer};
-    result = begin(&(range_step){gpu, maps, layer, 0}, target, range->width, range->height, &program);
-    if (result != PN_OK) break;
-    pni_part part = part_of_level(maps, layer, 0, range->width, range->height);
-    draw_part(gpu, &part, range->width, range->height);
-  }
-  return result == PN_OK ? reduce_all(gpu, range, maps) : result;
+  int levels = level_count(power_above(larger(range->width, range->height)));
+  pn_result result =
+      pni_texture_shape(gpu, &maps->aside, "range stack, aside", PNI_RG32F, range->width, range->height, 0, 1);
+  for (int layer = 0; layer < range->layers / levels; layer++)
+    for (int level = 0; level < levels && result == PN_OK; level++)
+      result = draw_stack(gpu, maps, layer, level, levels);
+  return result;
 }
 
 pn_result pni_range_build(pni_gpu *gpu, pni_maps *maps) {

@@ -1,8 +1,9 @@
-// Largest and smallest w of neighbourhoods, and the smallest beside what is empty (1e30 where all is; pyramids of three
+// Largest and smallest w of neighbourhoods, and the smallest beside what is empty (PN_EVERYTHING where all is; pyramids of three
 // channels keep it). A pyramid's level takes 2 x 2 texels of the one below; a stack's level
 // four texels of the one below, half a neighbourhood apart (Bitmask Soft Shadows, Fig. 7). The first level reads the
 // depth map; over quads each texel there stands for itself and its right and upper neighbours.
 #include "shaders/precision.glsl"
+#include "space/limits.glsl"
 #if PN_FIRST
 #include "maps/maps.glsl"
 uniform highp sampler2DArray pn_maps;
@@ -18,11 +19,11 @@ vec3 pn_join(vec3 a, vec3 b) { return vec3(max(a.x, b.x), min(a.yz, b.yz)); }
 #if PN_FIRST
 // Beyond the map nothing is, and the smallest w says so too.
 vec3 pn_texels(ivec2 at, int size) {
-  vec3 range = vec3(-1e30, 1e30, 1e30);
+  vec3 range = vec3(PN_NOTHING, PN_EVERYTHING, PN_EVERYTHING);
   for (int y = 0; y < size; y++)
     for (int x = 0; x < size; x++) {
       float w = pn_map_fetch(0, pn_maps, pn_source.z, pn_source.w, at + ivec2(x, y));
-      range = pn_join(range, vec3(w, w, w > PN_NOTHING ? w : 1e30));
+      range = pn_join(range, vec3(w, w, w > PN_NOTHING ? w : PN_EVERYTHING));
     }
   return range;
 }
@@ -44,7 +45,7 @@ void main() {
   range = pn_join(range, texelFetch(pn_range, ivec3(b, pn_place.x), 0).rgb);
 #else
   ivec2 last = textureSize(pn_range, 0).xy - 1;
-  vec3 range = vec3(-1e30, 1e30, 1e30);
+  vec3 range = vec3(PN_NOTHING, PN_EVERYTHING, PN_EVERYTHING);
   for (int i = 0; i < 4; i++)
     range = pn_join(range, texelFetch(pn_range, ivec3(min(2 * at + ivec2(i & 1, i >> 1), last), pn_source.x), 0).rgb);
 #endif

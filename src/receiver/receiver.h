@@ -1,8 +1,9 @@
 /* One camera view: the host's depth, as the shaders read it. */
-#ifndef PN_RECEIVER_RECEIVER_H
-#define PN_RECEIVER_RECEIVER_H
+#ifndef PNI_RECEIVER_RECEIVER_H
+#define PNI_RECEIVER_RECEIVER_H
 
 #include "context.h"
+#include "gl/pass.h"
 #include "space/region.h"
 
 struct pn_receiver {
@@ -13,20 +14,29 @@ struct pn_receiver {
   bool copied;           /* the copy is what is read, and its origin is the view's */
   pni_matrix scene_from_clip;
   pni_matrix scene_from_pixel; /* (x + 1/2, y + 1/2, stored depth, 1) in the view */
-  pni_texture bounds[4];       /* what bounds.c reduces into: two pairs, in turn */
-  float quantum[4];            /* error of a depth: absolute, relative; background; angle error of given normals */
+  float depth_error[2];        /* of a stored depth: absolute, relative to it */
+  float normal_error;          /* angle by which a given normal may be off, radians */
+  pni_texture planes;    /* without given normals: how depth goes on around each pixel (receiver/planes.frag.glsl) */
+  bool has_planes;       /* they are this frame's */
+  pni_texture bounds[4]; /* what bounds.c reduces into: two pairs, in turn */
 };
+
+/* The stored depth that means nothing was drawn. */
+float pni_receiver_background(const pn_receiver *receiver);
 
 /* Size of the image that visibility is computed at: 1/scale, rounded up. */
 void pni_receiver_low_size(const pn_receiver *receiver, int *width, int *height);
 
-/* Lines for a program that includes receiver/surface.glsl. */
+/* What all passes over the view's surfaces share, made once a frame: before the first of them, outside of any pass. */
+pn_result pni_receiver_surfaces(pn_receiver *receiver);
+
+/* Lines for a program that includes receiver/surface.glsl or receiver/depth.glsl. */
 enum { PNI_RECEIVER_DEFINES = 64 };
 void pni_receiver_defines(const pn_receiver *receiver, char out[PNI_RECEIVER_DEFINES]);
-/* Textures and uniforms for such a program, which is in use. scale 1: every pixel itself. */
-void pni_receiver_bind(pn_receiver *receiver, const pni_program *program, const pni_frame *frame, int scale);
+/* Textures and uniforms for such a program, in the pass that has begun. scale 1: every pixel itself. */
+void pni_receiver_uniforms(pn_receiver *receiver, const pni_frame *frame, int scale);
 
-/* Adds what the camera sees to the region: reads a few numbers back. */
+/* Adds what the camera sees to the region: reads a few numbers back. (receiver/bounds.c) */
 pn_result pni_receiver_bounds(pn_receiver *receiver, const pni_frame *frame, pni_region *region);
 /* Adds what its frustum contains. */
 void pni_receiver_frustum(const pn_receiver *receiver, const pni_frame *frame, pni_region *region);

@@ -1,44 +1,23 @@
 // From the host's depth to surface points. Depth is affine along any plane in pixel coordinates, under perspective
 // too, so planes are found there and carried over by the inverse transpose: no difference of nearly equal positions
 // is ever taken.
+#include "receiver/depth.glsl"
 
-uniform highp sampler2D pn_depth;
 #if PN_NORMALS
 uniform highp sampler2D pn_normal;
 uniform mat3 pn_light_from_normal;
-#endif
-#if PN_MASK
-uniform highp sampler2D pn_mask;
+#else
+uniform highp sampler2D pn_planes; // receiver/planes.frag.glsl
 #endif
 uniform mat4 pn_light_from_pixel; // (x + 1/2, y + 1/2, stored depth, 1) in the view
 uniform mat4 pn_pixel_from_light;
-uniform vec4 pn_eye;     // the camera's centre in the light's frame; w 0: the direction to it
-uniform ivec4 pn_view;   // origin in the textures, width, height
-uniform ivec4 pn_offset; // origin in normal and mask textures, scale, sample in the block of scale x scale pixels
-uniform vec4 pn_quantum; // error of a depth: absolute, relative; background depth; angle error of given normals
+uniform vec4 pn_eye; // the camera's centre in the light's frame; w 0: the direction to it
 
 struct pn_Surface {
   vec3 p, n;   // light frame, n unit and turned to the camera
   vec3 error;  // bound on p's error
   float sigma; // bound on n's, radians
 };
-
-bool pn_view_has(ivec2 pixel) { return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, pn_view.zw)); }
-
-float pn_depth_at(ivec2 pixel) { return texelFetch(pn_depth, pn_view.xy + pixel, 0).r; }
-
-bool pn_is_background(float depth) { return depth == pn_quantum.z; }
-
-// Whether the pixel shows a surface that receives.
-bool pn_receives(ivec2 pixel) {
-  if (pn_is_background(pn_depth_at(pixel))) return false;
-#if PN_MASK
-  if (texelFetch(pn_mask, pn_offset.xy + pixel, 0).r == 0.0) return false;
-#endif
-  return true;
-}
-
-float pn_depth_error(float depth) { return max(pn_quantum.x, pn_quantum.y * abs(depth)); }
 
 vec3 pn_point(ivec2 pixel, float depth) {
   vec4 h = pn_light_from_pixel * vec4(vec2(pixel) + 0.5, depth, 1.0);
@@ -61,34 +40,9 @@ void pn_position(ivec2 pixel, float depth, out vec3 p, out vec3 error) {
 }
 
 #if !PN_NORMALS
-// Slope of depth along one axis from five neighbours, and a bound on its error. At an edge the side is taken on which
-// depth goes on in a straight line; where both do, a wider baseline makes the error smaller.
-vec2 pn_slope(ivec2 pixel, ivec2 axis, float d0) {
-  float d[5];
-  bool has[5];
-  for (int i = 0; i < 5; i++) {
-    ivec2 at = pixel + (i - 2) * axis;
-    has[i] = pn_view_has(at);
-    d[i] = has[i] ? pn_depth_at(at) : 0.0;
-    has[i] = has[i] && !pn_is_background(d[i]);
-  }
-  float q = pn_depth_error(d0);
-  float left = has[1] ? (has[0] ? abs(d[0] - 2.0 * d[1] + d0) : abs(d0 - d[1])) : 1e30;
-  float right = has[3] ? (has[4] ? abs(d[4] - 2.0 * d[3] + d0) : abs(d0 - d[3])) : 1e30;
-  if (has[1] && has[3] && abs(d[1] - 2.0 * d0 + d[3]) <= 4.0 * q) {
-    bool wide = has[0] && has[4] && left <= 4.0 * q && right <= 4.0 * q && abs(d[0] - 2.0 * d0 + d[4]) <= 4.0 * q;
-    return wide ? vec2(0.25 * (d[4] - d[0]), 0.5 * q) : vec2(0.5 * (d[3] - d[1]), q);
-  }
-  if (!has[1] && !has[3]) return vec2(0.0, 0.0); // a surface one pixel wide: as if it faced the camera
-  // Where neither side goes on straight, faces are two pixels wide or less: the slope stays open by as much as it
-  // bends.
-  float open = min(left, right) > 4.0 * q ? min(left, right) : 0.0;
-  return left < right ? vec2(d0 - d[1], 2.0 * q + open) : vec2(d[3] - d0, 2.0 * q + open);
-}
-
 void pn_tangent_plane(ivec2 pixel, float depth, out vec3 n, out float sigma) {
-  vec2 gx = pn_slope(pixel, ivec2(1, 0), depth);
-  vec2 gy = pn_slope(pixel, ivec2(0, 1), depth);
+  vec4 slopes = texelFetch(pn_planes, pixel, 0);
+  vec2 gx = slopes.xy, gy = slopes.zw;
   vec2 at = vec2(pixel) + 0.5;
   // The plane depth = depth + gx (x - at.x) + gy (y - at.y) as a covector, taken to the light's frame by the
   // transpose of the inverse.

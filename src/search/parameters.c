@@ -18,7 +18,6 @@ float pni_search_focus(double percent) { return percent < 100 ? (float)(0.01 * p
 int pni_search_defines(const pni_search_values *v, char *out, size_t size) {
   bool descent = descends(v);
   int refine = v->hierarchy == PNI_HIERARCHY_NONE ? 0 : v->hierarchy == PNI_HIERARCHY_MSSM && !descent ? 2 : 1;
-  return snprintf(out, size,
-                  "PN_PRIMITIVE %d\nPN_GAPS %d\nPN_EDGES %d\nPN_DESCENT %d\nPN_REFINE %d\nPN_MERGE %d\nPN_CAP %d\n",
-                  (int)v->primitive, v->gaps, v->edges, descent, refine, v->merge_index, v->cap_index);
+  return snprintf(out, size, "PN_PRIMITIVE %d\nPN_GAPS %d\nPN_EDGES %d\nPN_DESCENT %d\nPN_REFINE %d\n",
+                  (int)v->primitive, v->gaps, v->edges, descent, refine);
 }

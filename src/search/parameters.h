@@ -1,8 +1,8 @@
 /* Parameters that techniques with a search share. */
-#ifndef PN_SEARCH_PARAMETERS_H
-#define PN_SEARCH_PARAMETERS_H
+#ifndef PNI_SEARCH_PARAMETERS_H
+#define PNI_SEARCH_PARAMETERS_H
 
-#include "maps/maps.h"
+#include "maps/list.h"
 
 typedef enum { PNI_PRIMITIVE_PATCH, PNI_PRIMITIVE_QUAD, PNI_PRIMITIVE_QUAD_EXACT } pni_primitive;
 typedef enum { PNI_HIERARCHY_MSSM, PNI_HIERARCHY_HSM, PNI_HIERARCHY_NONE } pni_hierarchy;
@@ -46,7 +46,6 @@ typedef struct {
   pni_hierarchy hierarchy;
   bool gaps, edges;
   double merge;
-  int merge_index, cap_index; /* places in the technique's table */
 } pni_search_values;
 
 /* What summarises the maps for such a search. Descent walks the pyramid, whatever narrows the window. */

@@ -2,7 +2,7 @@
 #define PN_PATCH 0      // a texel is a rectangle parallel to the light
 #define PN_QUAD 1       // four neighbouring texel centres are a quad's corners
 #define PN_QUAD_EXACT 2 // the same, covered exactly
-#include "search/receiver.glsl"
+#include "gather/shaded_point.glsl"
 
 // To coordinates from 0 to 1 over the light: d = (s, t) - (s_R, t_R), dw = w - w_R.
 vec2 pn_on_light(int light, vec2 d, float dw) { return 0.5 + 0.5 * d / (dw * pn_extent(light)); }

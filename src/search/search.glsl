@@ -26,7 +26,7 @@ struct pn_Window {
 // ---- plane rejection over a box of (s, t, w), relative to the receiver ---------------------------------------------
 
 // Least and greatest pn_plane_front, with the receiver's own uncertainty taken off and added.
-vec2 pn_front_range(pn_Receiver r, vec2 low, vec2 high, float dw_least, float dw_most) {
+vec2 pn_front_range(pn_ShadedPoint r, vec2 low, vec2 high, float dw_least, float dw_most) {
   vec2 a = r.n.xy * low, b = r.n.xy * high;
   vec2 c = -r.k * vec2(dw_least, dw_most);
   float least = min(a.x, b.x) + min(a.y, b.y) + min(c.x, c.y);
@@ -38,19 +38,19 @@ vec2 pn_front_range(pn_Receiver r, vec2 low, vec2 high, float dw_least, float dw
 
 // ---- single primitives ---------------------------------------------------------------------------------------------
 
-bool pn_texel_hides(int light, pn_Receiver r, int map, ivec2 texel, float w) {
+bool pn_texel_hides(int light, pn_ShadedPoint r, int map, ivec2 texel, float w) {
   // A patch reaches half a texel beyond its sample, over creases.
   return pn_blocks_apart(light, r, vec3(pn_map_st(light, map, vec2(texel) + 0.5), w));
 }
 
 // A block of texels, from low to high (map coordinates), at w: a micropatch, or the coarser one that stands for many.
-void pn_add_patch(int light, pn_Receiver r, vec2 low, vec2 high, float w, inout pn_Cover c) {
+void pn_add_patch(int light, pn_ShadedPoint r, vec2 low, vec2 high, float w, inout pn_Cover c) {
   float dw = w - r.m.z;
   pn_cover_rectangle(c, pn_on_light(light, low - r.m.xy, dw), pn_on_light(light, high - r.m.xy, dw));
   pn_search_done.z += 1.0;
 }
 
-void pn_texel_patch(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 texel, inout pn_Cover c) {
+void pn_texel_patch(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 texel, inout pn_Cover c) {
   float w = pn_map_fetch(light, maps, map, layer, texel);
   if (w <= r.m.z + r.epsilon_w || !pn_texel_hides(light, r, map, texel, w)) return;
   vec2 low = pn_map_st(light, map, vec2(texel)) - r.m.xy, high = pn_map_st(light, map, vec2(texel) + 1.0) - r.m.xy;
@@ -81,12 +81,12 @@ vec2 pn_edge(float scale, float near, float far, vec2 share, vec2 inverse) {
   return vec2(min(at.x, at.y), max(at.x, at.y));
 }
 
-pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 first, ivec2 last) {
-  int array_layer = map * pn_map_layers(light) + layer;
-  ivec2 size = pn_map_size(light), end = min(last, size - 1);
+pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 first, ivec2 last) {
+  int array_layer = pn_array_layer(light, map, layer);
+  ivec2 size = pn_map_size(light, map), end = min(last, size - 1);
   vec4 depth = vec4(texelFetch(maps, ivec3(first, array_layer), 0).r, texelFetch(maps, ivec3(end.x, first.y, array_layer), 0).r,
                     texelFetch(maps, ivec3(first.x, end.y, array_layer), 0).r, texelFetch(maps, ivec3(end, array_layer), 0).r);
-  vec2 w_of_depth = pn_lights[light].map_depth[map].xy;
+  vec2 w_of_depth = pn_lights[light].maps[map].w_of_depth;
   vec4 dw = w_of_depth.x + w_of_depth.y * depth - r.m.z;
   vec2 low = pn_map_st(light, map, vec2(first) + 0.5) - r.m.xy, high = pn_map_st(light, map, vec2(last) + 0.5) - r.m.xy;
   vec4 s = vec4(low.x, high.x, low.x, high.x), t = vec4(low.y, low.y, high.y, high.y);
@@ -103,7 +103,7 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, in
   vec4 rise = min(max(abs(s), abs(t)), vec4(max(cell.x, cell.y)));
   if (!q.whole) hide *= vec4(greaterThan(front, rise));
   q.some = q.whole || (PN_EDGES != 0 && hide != vec4(0.0));
-  vec4 inverse = 1.0 / max(dw, vec4(1e-30));
+  vec4 inverse = 1.0 / max(dw, vec4(PN_TINY));
   vec2 scale = 0.5 / pn_extent(light);
   q.x = 0.5 + scale.x * s * inverse;
   q.y = 0.5 + scale.y * t * inverse;
@@ -113,14 +113,14 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, in
   vec2 columns = hide.xy + hide.zw, rows = hide.xz + hide.yw;
   vec2 column_share = min(columns, vec2(1.0));
   vec2 row_share = rows / max(column_share.x + column_share.y, 1.0);
-  vec2 along_x = pn_edge(scale.x, low.x, high.x, column_share, columns / max(hidden.xy + hidden.zw, vec2(1e-30)));
-  vec2 along_y = pn_edge(scale.y, low.y, high.y, row_share, rows / max(hidden.xz + hidden.yw, vec2(1e-30)));
+  vec2 along_x = pn_edge(scale.x, low.x, high.x, column_share, columns / max(hidden.xy + hidden.zw, vec2(PN_TINY)));
+  vec2 along_y = pn_edge(scale.y, low.y, high.y, row_share, rows / max(hidden.xz + hidden.yw, vec2(PN_TINY)));
   q.low = vec2(along_x.x, along_y.x);
   q.high = vec2(along_x.y, along_y.y);
   return q;
 }
 
-void pn_texel_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 first, ivec2 last, inout pn_Cover c) {
+void pn_texel_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 first, ivec2 last, inout pn_Cover c) {
   pn_Quad q = pn_quad(light, maps, r, map, layer, first, last);
   if (!q.some) return;
   if (q.whole)
@@ -131,7 +131,7 @@ void pn_texel_quad(int light, highp sampler2DArray maps, pn_Receiver r, int map,
 }
 #endif
 
-void pn_texel_primitive(int light, highp sampler2DArray maps, pn_Receiver r, int map, int layer, ivec2 texel, inout pn_Cover c) {
+void pn_texel_primitive(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 texel, inout pn_Cover c) {
 #if PN_PRIMITIVE == PN_PATCH
   pn_texel_patch(light, maps, r, map, layer, texel, c);
 #else
@@ -151,7 +151,7 @@ vec2 pn_block_st(int light, int map, ivec2 texel) {
 // ---- the window ----------------------------------------------------------------------------------------------------
 
 // Texels within reach of casters up to w. Tiles leave their border to their neighbours.
-void pn_window_texels(int light, pn_Receiver r, int map, float w, out ivec2 low, out ivec2 high) {
+void pn_window_texels(int light, pn_ShadedPoint r, int map, float w, out ivec2 low, out ivec2 high) {
   vec2 window = pn_search_window(pn_extent(light), w, r.m.z);
   int border = pn_map_count(light) > 1 ? 1 : 0;
 #if PN_PRIMITIVE == PN_PATCH
@@ -160,16 +160,16 @@ void pn_window_texels(int light, pn_Receiver r, int map, float w, out ivec2 low,
   const float shift = 0.5; // a quad lies between the centres of its texel and the next
 #endif
   low = max(ivec2(floor(pn_map_texel(light, map, r.m.xy - window) - shift)), ivec2(border));
-  high = min(ivec2(floor(pn_map_texel(light, map, r.m.xy + window) - shift)), pn_map_size(light) - 1 - border);
+  high = min(ivec2(floor(pn_map_texel(light, map, r.m.xy + window) - shift)), pn_map_size(light, map) - 1 - border);
 }
 
 #if PN_REFINE == 2
 // The range stack keeps its levels as array layers: level i holds largest and smallest w of the 2^i x 2^i texels
 // centred on each texel.
 vec2 pn_stack_at(int light, highp sampler2DArray stack, int map, int layer, int level, ivec2 texel) {
-  int levels = textureSize(stack, 0).z / (pn_map_count(light) * pn_map_layers(light));
-  ivec2 at = clamp(texel, ivec2(0), pn_map_size(light) - 1);
-  return texelFetch(stack, ivec3(at, (map * pn_map_layers(light) + layer) * levels + level), 0).rg;
+  int levels = textureSize(stack, 0).z / (pn_array_layer(light, pn_map_count(light) - 1, 0) + pn_map_layers(light, map));
+  ivec2 at = clamp(texel, ivec2(0), pn_map_size(light, map) - 1);
+  return texelFetch(stack, ivec3(at, pn_array_layer(light, map, layer) * levels + level), 0).rg;
 }
 
 // Level whose neighbourhood is at least that many texels wide.
@@ -184,7 +184,7 @@ vec2 pn_window_range(int light, highp sampler2DArray stack, int map, int layer, 
   if (!four) {
     // The centre of a neighbourhood of even size is half a texel off; over the whole map that does not matter, and
     // there is no level above it.
-    ivec2 size = pn_map_size(light);
+    ivec2 size = pn_map_size(light, map);
     int level = pn_stack_level(min(extent + 1, max(size.x, size.y)));
     return pn_stack_at(light, stack, map, layer, level, (low + high + 1) / 2);
   }
@@ -206,9 +206,9 @@ vec2 pn_window_range(int light, highp sampler2DArray range, int map, int layer, 
 #endif
 
 // The window, narrowed twice: what casts nearest there decides how wide it must be.
-pn_Window pn_find_window(int light, highp sampler2DArray range, pn_Receiver r, int map, int layer) {
+pn_Window pn_find_window(int light, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer) {
   pn_Window window;
-  window.w = vec2(pn_lights[light].range.x, PN_NOTHING);
+  window.w = vec2(pn_w_near(light), PN_NOTHING);
   pn_window_texels(light, r, map, window.w.x, window.low, window.high);
 #if PN_REFINE > 0
   for (int step = 0; step < 2; step++) {
@@ -222,7 +222,7 @@ pn_Window pn_find_window(int light, highp sampler2DArray range, pn_Receiver r, i
 }
 
 // Everything in the window hides: nearer than the receiver and in front of its plane, without a gap.
-bool pn_is_umbra(int light, pn_Receiver r, int map, pn_Window window) {
+bool pn_is_umbra(int light, pn_ShadedPoint r, int map, pn_Window window) {
   if (window.w.y <= r.m.z + r.epsilon_w) return false;
   vec2 reach = pn_search_window(pn_extent(light), window.w.x, r.m.z);
   vec2 low = pn_block_st(light, map, window.low) - r.m.xy, high = pn_block_st(light, map, window.high + 1) - r.m.xy;
@@ -240,15 +240,15 @@ bool pn_is_umbra(int light, pn_Receiver r, int map, pn_Window window) {
 
 // A texel of a coarser level past the cap, on the pyramid's fixed grid: nearest surface of its block, as one patch
 // (section 5).
-void pn_coarse_patch(int light, highp sampler2DArray range, pn_Receiver r, int map, int layer, ivec2 block, int level, inout pn_Cover c) {
+void pn_coarse_patch(int light, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, ivec2 block, int level, inout pn_Cover c) {
 #if PN_REFINE == 2
   vec2 w = pn_stack_at(light, range, map, layer, level, (block << level) + ((1 << level) >> 1));
 #else
-  vec2 w = texelFetch(range, ivec3(block, map * pn_map_layers(light) + layer), level).rg;
+  vec2 w = texelFetch(range, ivec3(block, pn_array_layer(light, map, layer)), level).rg;
 #endif
   float dw = w.x - r.m.z;
   if (dw <= r.epsilon_w) return;
-  ivec2 first = block << level, last = min((block + 1) << level, pn_map_size(light));
+  ivec2 first = block << level, last = min((block + 1) << level, pn_map_size(light, map));
   vec2 low = pn_block_st(light, map, first), high = pn_block_st(light, map, last);
   // The plane's largest value over the block is held against the block's largest w.
   if (pn_front_range(r, low - r.m.xy, high - r.m.xy, dw, dw).x <= 0.0) return;
@@ -263,7 +263,7 @@ int pn_level_for(ivec2 size, int cap) {
   return level;
 }
 
-void pn_scan_one(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, ivec2 at, int level,
+void pn_scan_one(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, ivec2 at, int level,
                  inout pn_Cover c) {
   pn_search_done.y += 1.0;
   if (level == 0)
@@ -273,7 +273,7 @@ void pn_scan_one(int light, highp sampler2DArray maps, highp sampler2DArray rang
 }
 #define PN_TURN(i) if (x + i <= last.x) pn_scan_one(light, maps, range, r, map, layer, ivec2(x + i, y), level, c);
 
-void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, pn_Window window,
+void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, pn_Window window,
              int cap, inout pn_Cover c) {
   int level = pn_level_for(window.high - window.low + 1, cap);
   ivec2 first = window.low >> level, last = window.high >> level;
@@ -296,9 +296,9 @@ struct pn_Rectangle { vec2 low, high; }; // on the light, 0 to 1
 // One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Wherever in its range the
 // surface lies, it hides no more than the hull of the block's projections at both ends of the range, and, where it has
 // no hole, no less than what both have in common.
-int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer,
+int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer,
                    ivec2 node, int level, float merge, inout pn_Cover c, out pn_Quad quad) {
-  vec3 dw = texelFetch(range, ivec3(node, map * pn_map_layers(light) + layer), level).rgb - r.m.z; // largest, smallest, that of what is there
+  vec3 dw = texelFetch(range, ivec3(node, pn_array_layer(light, map, layer)), level).rgb - r.m.z; // largest, smallest, that of what is there
   vec2 extent = pn_extent(light);
   vec2 low = pn_block_st(light, map, node << level) - r.m.xy, high = pn_block_st(light, map, (node + 1) << level) - r.m.xy;
   bool beside = any(greaterThan(low, extent * dw.x)) || any(lessThan(high, -extent * dw.x));
@@ -371,7 +371,7 @@ bool pn_walk(inout ivec2 node, inout int level, int top, ivec2 first, ivec2 last
 
 // Depth first over the blocks that the window touches, without a stack. A quad that is covered exactly takes a turn
 // for each of its rows. Past PN_TURNS turns, over all layers and maps, blocks are looked at no closer.
-void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer,
+void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer,
                 pn_Window window, float merge, inout pn_Cover c) {
   int extent = max(window.high.x - window.low.x, window.high.y - window.low.y), top = 0;
   while ((extent >> top) > 2) top++;
@@ -402,7 +402,7 @@ void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range
 
 // ---- one layer of one map ------------------------------------------------------------------------------------------
 
-void pn_search(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r, int map, int layer, inout pn_Cover c) {
+void pn_search(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, inout pn_Cover c) {
   pn_Window window = pn_find_window(light, range, r, map, layer);
   pn_search_done.x = max(pn_search_done.x, 1.0);
   // lit, as far as this layer goes
@@ -415,9 +415,9 @@ void pn_search(int light, highp sampler2DArray maps, highp sampler2DArray range,
   }
   pn_search_done.x = 3.0;
 #if PN_DESCENT
-  pn_descend(light, maps, range, r, map, layer, window, 0.01 * pn_parameter(light, PN_MERGE), c);
+  pn_descend(light, maps, range, r, map, layer, window, 0.01 * pn_parameter(light, PN_PARAMETER_MERGE), c);
 #else
-  pn_scan(light, maps, range, r, map, layer, window, int(pn_parameter(light, PN_CAP)), c);
+  pn_scan(light, maps, range, r, map, layer, window, int(pn_parameter(light, PN_PARAMETER_CAP)), c);
 #endif
 }
 

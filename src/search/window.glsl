@@ -1,22 +1,22 @@
 // The search window: texels that can block a receiver, from the light's extent and the nearest caster there, narrowed
 // by the range pyramid.
-#include "search/receiver.glsl"
+#include "gather/shaded_point.glsl"
 
 // Largest and smallest w in a window of texels (both ends included), from the pyramid whose level i has them over 2^i
 // x 2^i texels. Four samples of the coarsest level that is still no larger than the window.
 vec2 pn_range_over(int light, highp sampler2DArray pyramid, int map, int layer, ivec2 low, ivec2 high) {
-  ivec2 last = pn_map_size(light) - 1;
+  ivec2 last = pn_map_size(light, map) - 1;
   if (any(lessThan(high, ivec2(0))) || any(greaterThan(low, last))) return vec2(PN_NOTHING);
   low = max(low, ivec2(0));
   high = min(high, last);
   int extent = max(high.x - low.x, high.y - low.y);
   int level = 0;
   while ((extent >> level) > 1) level++;
-  int array_layer = map * pn_map_layers(light) + layer;
+  int array_layer = pn_array_layer(light, map, layer);
   ivec2 a = low >> level, b = high >> level;
   // The window may touch three blocks along an axis where it is not aligned; the one between is then read as well.
   ivec2 c = (a + b) >> 1;
-  vec2 range = vec2(PN_NOTHING, -PN_NOTHING);
+  vec2 range = vec2(PN_NOTHING, PN_EVERYTHING);
   for (int i = 0; i < 9; i++) {
     ivec2 at = ivec2(i % 3 == 0 ? a.x : i % 3 == 1 ? c.x : b.x, i / 3 == 0 ? a.y : i / 3 == 1 ? c.y : b.y);
     vec2 w = texelFetch(pyramid, ivec3(at, array_layer), level).rg;
@@ -27,8 +27,8 @@ vec2 pn_range_over(int light, highp sampler2DArray pyramid, int map, int layer, 
 
 // Largest w that any map has inside the receiver's search window; at first the window reaches as far as the nearest
 // caster of all could need, then as far as the nearest caster found in it needs.
-float pn_window_nearest(int light, highp sampler2DArray pyramid, pn_Receiver r) {
-  float w_max = pn_lights[light].range.x;
+float pn_window_nearest(int light, highp sampler2DArray pyramid, pn_ShadedPoint r) {
+  float w_max = pn_w_near(light);
   for (int step = 0; step < 2; step++) {
     vec2 window = pn_search_window(pn_extent(light), w_max, r.m.z);
     float found = PN_NOTHING;

@@ -1,14 +1,15 @@
 // The techniques inside a host's own shader: the same functions as in the full-screen passes, for up to four lights.
 #include "shaders/precision.glsl"
-#include "search/receiver.glsl"
+#include "gather/channels.glsl"
+#include "gather/shaded_point.glsl"
 
 uniform highp sampler2DArray pn_maps_0, pn_maps_1, pn_maps_2, pn_maps_3;
 uniform highp sampler2DArray pn_range_0, pn_range_1, pn_range_2, pn_range_3;
 
-float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r);
+pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r);
 
 // Samplers cannot be indexed by a variable in GLSL ES 3.00.
-float pn_technique_of(int light, pn_Receiver r) {
+pn_Visibility pn_technique_of(int light, pn_ShadedPoint r) {
   if (light == 0) return pn_technique(0, pn_maps_0, pn_range_0, r);
   if (light == 1) return pn_technique(1, pn_maps_1, pn_range_1, r);
   if (light == 2) return pn_technique(2, pn_maps_2, pn_range_2, r);
@@ -23,7 +24,7 @@ float pn_visibility(int light, vec3 position, vec3 geometric_normal) {
   // An interpolated position is off by some units in the last place of the largest term.
   vec3 size = vec3(dot(abs(u.xyz), abs(position)) + abs(u.w), dot(abs(v.xyz), abs(position)) + abs(v.w),
                    dot(abs(z.xyz), abs(position)) + abs(z.w));
-  pn_Receiver r = pn_receiver(light, p, 1e-6 * size, n, 1e-4);
+  pn_ShadedPoint r = pn_shaded_point(light, p, 1e-6 * size, n, 1e-4);
   if (pn_unlit(light, r) || pn_above_casters(light, r)) return 1.0;
   return clamp(pn_technique_of(light, r), 0.0, 1.0);
 }

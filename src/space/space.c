@@ -78,7 +78,8 @@ pni_matrix pni_light_from_scene(const pni_frame *frame) {
   return out;
 }
 
-void pni_map_point(const double p[3], bool sun, double m[3]) {
+void pni_map_point(const double p[3], pni_projection projection, double m[3]) {
+  bool sun = projection == PNI_PARALLEL;
   double w = sun ? -p[2] : 1 / p[2];
   double scale = sun ? 1 : w;
   m[0] = p[0] * scale;
@@ -86,7 +87,8 @@ void pni_map_point(const double p[3], bool sun, double m[3]) {
   m[2] = w;
 }
 
-void pni_light_point(const double m[3], bool sun, double p[3]) {
+void pni_light_point(const double m[3], pni_projection projection, double p[3]) {
+  bool sun = projection == PNI_PARALLEL;
   double z = sun ? -m[2] : 1 / m[2];
   double scale = sun ? 1 : z;
   p[0] = m[0] * scale;
@@ -99,7 +101,9 @@ void pni_back_project(const double q[3], const double r[3], double light_point[2
   light_point[1] = (q[1] - r[1]) / (q[2] - r[2]);
 }
 
-double pni_plane_offset(const double n[3], const double p[3], bool sun) { return sun ? n[2] : dot(n, p); }
+double pni_plane_offset(const double n[3], const double p[3], pni_projection projection) {
+  return projection == PNI_PARALLEL ? n[2] : dot(n, p);
+}
 
 double pni_plane_front(const double n[3], double k, const double q[3], const double r[3]) {
   return n[0] * (q[0] - r[0]) + n[1] * (q[1] - r[1]) - k * (q[2] - r[2]);
@@ -122,7 +126,9 @@ void pni_depth_scale(double w_near, double w_far, double w_of_depth[2]) {
 /* Rows, with a = 2 / (s1 - s0):  x_clip / w_clip = a (s' - s0) - 1,  z_clip / w_clip = 2 (w - w_near) / (w_far -
  * w_near) - 1, where w_clip = z for a rectangle (s' = (x - shear) / z, w = 1 / z) and 1 for a sun (s' = x + shear z,
  * w = -z). */
-pni_matrix pni_clip_from_light(bool sun, const double bounds[4], double w_near, double w_far, const double shear[2]) {
+pni_matrix pni_clip_from_light(pni_projection projection, const double bounds[4], double w_near, double w_far,
+                               const double shear[2]) {
+  bool sun = projection == PNI_PARALLEL;
   pni_matrix out = {{0}};
   double depth = 2 / (w_far - w_near);
   for (int axis = 0; axis < 2; axis++) {

@@ -12,11 +12,24 @@
 #include <penumbra/penumbra.h>
 #include "space/matrix.h"
 
+/* How the space is projected: towards a light's centre, or along a sun's rays. What the light looks like from there, its
+ * outline and emission, is another matter: pni_emission. */
+typedef enum { PNI_CENTRAL = 0, PNI_PARALLEL } pni_projection;
+
 typedef struct {
   double origin[3], u[3], v[3], z[3]; /* scene space; u, v, z unit and perpendicular */
-  double extent[2];                   /* A_u, A_v: scene units, or tangents */
-  bool sun;
+  pni_projection projection;
 } pni_frame;
+
+/* What emits: the rectangle [-A_u, A_u] x [-A_v, A_v] in the frame's u and v, every point alike. */
+typedef struct {
+  double extent[2]; /* A_u, A_v: scene units, or tangents */
+} pni_emission;
+
+/* The w of what is not there, behind every receiver, and its opposite. Anything beyond a tenth of them is one of them. */
+#define PNI_NOTHING -1e30f
+#define PNI_EVERYTHING 1e30f
+static inline bool pni_is_nothing(double w) { return w <= -1e29; }
 
 /* Stored depths keep this far from 0 and 1, so that those two mean 'nothing here', even where depth clamping moved a
  * caster to the end of the range. */
@@ -30,13 +43,13 @@ bool pni_frame_axes(const float direction[3], const float axis_u[3], pni_frame *
 pni_matrix pni_light_from_scene(const pni_frame *frame);
 
 /* p in the light's frame to (s, t, w). */
-void pni_map_point(const double p[3], bool sun, double m[3]);
+void pni_map_point(const double p[3], pni_projection projection, double m[3]);
 /* ... and back. */
-void pni_light_point(const double m[3], bool sun, double p[3]);
+void pni_light_point(const double m[3], pni_projection projection, double p[3]);
 /* The light's point behind Q as R sees it; meaningful for w_Q > w_R. */
 void pni_back_project(const double q[3], const double r[3], double light_point[2]);
 /* n . P for a rectangle, n_z for a sun: with it, horizons and planes are the same formula for both. */
-double pni_plane_offset(const double n[3], const double p[3], bool sun);
+double pni_plane_offset(const double n[3], const double p[3], pni_projection projection);
 /* How far Q lies in front of R's tangent plane, times w_Q for a rectangle: no division, so no sign flips. k =
  * pni_plane_offset. */
 double pni_plane_front(const double n[3], double k, const double q[3], const double r[3]);
@@ -53,6 +66,7 @@ void pni_depth_scale(double w_near, double w_far, double w_of_depth[2]);
 /* Clip space of a map that covers [s0, s1] x [t0, t1] between w_near and w_far, for coordinates in the light's frame;
  * sheared, it is the map as seen from the light's point (shear[0], shear[1]): s' = s - shear w, for both kinds of
  * light. */
-pni_matrix pni_clip_from_light(bool sun, const double bounds[4], double w_near, double w_far, const double shear[2]);
+pni_matrix pni_clip_from_light(pni_projection projection, const double bounds[4], double w_near, double w_far,
+                               const double shear[2]);
 
 #endif

@@ -1,15 +1,19 @@
-/* The techniques there are, and how their specs are read. */
-#include "techniques/technique.h"
+#include "techniques/registry.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#define PNI_TECHNIQUE(name) extern const pni_technique_class pni_technique_##name;
+#include "techniques/list.h"
+#undef PNI_TECHNIQUE
+
 static const pni_technique_class *const classes[] = {
-    &pni_technique_hard,    &pni_technique_pcf,       &pni_technique_pcss,
-    &pni_technique_average, &pni_technique_ssm,       &pni_technique_backprojection,
-    &pni_technique_bitmask, &pni_technique_smoothies,
+#define PNI_TECHNIQUE(name) &pni_technique_##name,
+#include "techniques/list.h"
+#undef PNI_TECHNIQUE
 };
 enum { COUNT = sizeof classes / sizeof *classes };
 
@@ -29,19 +33,19 @@ const pni_technique_class *pni_technique_class_of(const pn_technique *table) {
   return NULL;
 }
 
-/* ---- specs: "name" or "name:key=value,key=value" ----------------------------------------------------------------- */
+/* ---- explanations ------------------------------------------------------------------------------------------------ */
 
-typedef struct {
-  char *why;
-  size_t size;
-} explanation;
-
-static pn_result explain(const explanation *e, const char *format, const char *a, const char *b) {
-  if (e->why && e->size) snprintf(e->why, e->size, format, a, b);
+__attribute__((format(printf, 3, 4))) static pn_result explain(pni_explanation *e, pn_message message,
+                                                               const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(e->text, sizeof e->text, format, arguments);
+  va_end(arguments);
+  e->message = message;
   return PN_ERROR_ARGUMENT;
 }
 
-/* The names that would have been right, for the explanation. */
+/* The names that would have been right. */
 static void list_techniques(char out[256]) {
   out[0] = 0;
   for (int i = 0; i < COUNT; i++) {
@@ -71,6 +75,22 @@ static void describe_values(const pn_parameter *p, char out[256]) {
     snprintf(out + used, 256 - used, "%s%s", i ? ", " : "one of ", p->choices[i]);
   }
 }
+
+static pn_result explain_value(pni_explanation *e, const pn_technique *t, const pn_parameter *p, const char *value) {
+  char list[256];
+  describe_values(p, list);
+  return explain(e, PN_MESSAGE_PARAMETER_VALUE, "technique %s: %.60s=%.40s is no value; it takes %s", t->name, p->name,
+                 value, list);
+}
+
+static pn_result explain_unknown(pni_explanation *e, const pn_technique *t, const char *name) {
+  char list[256];
+  list_parameters(t, list);
+  return explain(e, PN_MESSAGE_PARAMETER_UNKNOWN, "technique %s: parameter '%.60s' is unknown; %s", t->name, name,
+                 list);
+}
+
+/* ---- values ------------------------------------------------------------------------------------------------------ */
 
 static bool read_number(const char *text, double *out) {
   static const char allowed[] = "0123456789+-.eE";
@@ -120,25 +140,21 @@ static int find_parameter(const pn_technique *t, const char *name) {
   return -1;
 }
 
+/* ---- specs: "name" or "name:key=value,key=value" ----------------------------------------------------------------- */
+
 /* One "key=value", which is cut apart in place. */
-static pn_result read_pair(const pn_technique *t, char *pair, double *values, const explanation *e) {
-  char list[256], named[128];
+static pn_result read_pair(const pn_technique *t, char *pair, double *values, pni_explanation *e) {
   char *value = strchr(pair, '=');
-  if (!value) return explain(e, "technique %s: parameter '%s' is not key=value", t->name, pair);
+  if (!value)
+    return explain(e, PN_MESSAGE_PARAMETER_UNKNOWN, "technique %s: parameter '%.60s' is not key=value", t->name, pair);
   *value++ = 0;
   int index = find_parameter(t, pair);
-  snprintf(named, sizeof named, "technique %s: parameter '%.60s'", t->name, pair);
-  if (index < 0) {
-    list_parameters(t, list);
-    return explain(e, "%s is unknown; %s", named, list);
-  }
+  if (index < 0) return explain_unknown(e, t, pair);
   if (read_value(&t->parameters[index], value, &values[index])) return PN_OK;
-  describe_values(&t->parameters[index], list);
-  snprintf(named, sizeof named, "technique %s: %.60s=%.40s", t->name, pair, value);
-  return explain(e, "%s is no value; it takes %s", named, list);
+  return explain_value(e, t, &t->parameters[index], value);
 }
 
-static pn_result read_all_pairs(const pn_technique *t, const char *text, double *values, const explanation *e) {
+static pn_result read_all_pairs(const pn_technique *t, const char *text, double *values, pni_explanation *e) {
   char copy[512];
   strcpy(copy, text);
   for (char *pair = copy, *next; pair; pair = next) {
@@ -152,54 +168,61 @@ static pn_result read_all_pairs(const pn_technique *t, const char *text, double 
 
 /* A preset is the ground that the other parameters stand on, wherever it is named: read once to find it, and again on
  * top of it. */
-static pn_result read_pairs(const pn_technique *t, const char *text, double *values, const explanation *e) {
-  if (!text) return PN_OK;
-  const pni_technique_class *technique = pni_technique_class_of(t);
+static pn_result read_pairs(const pni_technique_class *technique, const char *text, double *values,
+                            pni_explanation *e) {
+  const pn_technique *t = &technique->table;
+  int preset = technique->preset ? find_parameter(t, "preset") : -1;
   double first[PNI_PARAMETERS_MAX];
   memcpy(first, values, sizeof first);
   pn_result result = read_all_pairs(t, text, first, e);
-  if (result != PN_OK || !technique->preset) return read_all_pairs(t, text, values, e);
-  technique->preset((int)first[0], values);
-  values[0] = first[0];
+  if (result != PN_OK || preset < 0) return read_all_pairs(t, text, values, e);
+  technique->preset((int)first[preset], values);
+  values[preset] = first[preset];
   return read_all_pairs(t, text, values, e);
 }
 
-pn_result pn_technique_parse(const char *spec, const pn_technique **technique, double *values, char *why,
-                             size_t why_size) {
-  explanation e = {why, why_size};
+pn_result pni_spec_read(const char *spec, const pni_technique_class **out, double *values, pni_explanation *why) {
   char copy[512], list[256];
-  if (why && why_size) why[0] = 0;
-  if (!spec) return explain(&e, "no technique is given%s%s", "", "");
-  if (strlen(spec) >= sizeof copy) return explain(&e, "the technique's text is too long%s%s", "", "");
+  *why = (pni_explanation){PN_MESSAGE_NONE, ""};
+  if (!spec) return explain(why, PN_MESSAGE_NULL_ARGUMENT, "no technique is given");
+  if (strlen(spec) >= sizeof copy)
+    return explain(why, PN_MESSAGE_TECHNIQUE_UNKNOWN, "the technique's text is too long");
   strcpy(copy, spec);
   char *rest = strchr(copy, ':');
   if (rest) *rest++ = 0;
   const pn_technique *t = pn_technique_find(copy);
   if (!t) {
     list_techniques(list);
-    return explain(&e, "technique '%s' is unknown; there are %s", copy, list);
+    return explain(why, PN_MESSAGE_TECHNIQUE_UNKNOWN, "technique '%s' is unknown; there are %s", copy, list);
   }
+  *out = pni_technique_class_of(t);
+  memset(values, 0, PNI_PARAMETERS_MAX * sizeof *values);
+  for (int i = 0; i < t->parameter_count; i++) values[i] = t->parameters[i].initial;
+  return rest ? read_pairs(*out, rest, values, why) : PN_OK;
+}
+
+pn_result pn_technique_parse(const char *spec, const pn_technique **technique, double *values, char *why,
+                             size_t why_size) {
+  const pni_technique_class *found;
   double read[PNI_PARAMETERS_MAX];
-  for (int i = 0; i < t->parameter_count; i++) read[i] = t->parameters[i].initial;
-  pn_result result = read_pairs(t, rest, read, &e);
+  pni_explanation explanation;
+  pn_result result = pni_spec_read(spec, &found, read, &explanation);
+  if (why && why_size) snprintf(why, why_size, "%s", explanation.text);
   if (result != PN_OK) return result;
-  if (technique) *technique = t;
-  if (values) memcpy(values, read, (size_t)t->parameter_count * sizeof *values);
+  if (technique) *technique = &found->table;
+  if (values) memcpy(values, read, (size_t)found->table.parameter_count * sizeof *values);
   return PN_OK;
 }
 
-bool pni_parameter_set(const pn_technique *t, const char *name, double value, double *values, pn_message *message) {
+pn_result pni_parameter_set(const pni_technique_class *technique, const char *name, double value, double *values,
+                            pni_explanation *why) {
+  const pn_technique *t = &technique->table;
   int index = find_parameter(t, name);
-  *message = index < 0 ? PN_MESSAGE_PARAMETER_UNKNOWN : PN_MESSAGE_PARAMETER_VALUE;
-  if (index < 0 || !value_in_range(&t->parameters[index], value)) return false;
+  char text[32];
+  if (index < 0) return explain_unknown(why, t, name);
+  snprintf(text, sizeof text, "%g", value);
+  if (!value_in_range(&t->parameters[index], value)) return explain_value(why, t, &t->parameters[index], text);
   values[index] = value;
-  const pni_technique_class *technique = pni_technique_class_of(t);
-  if (index == 0 && technique->preset) technique->preset((int)value, values);
-  return true;
-}
-
-void pni_technique_defines(const pni_technique_class *technique, const double *values,
-                           char out[PNI_TECHNIQUE_DEFINES]) {
-  out[0] = 0;
-  if (technique->defines) technique->defines(values, out);
+  if (technique->preset && !strcmp(name, "preset")) technique->preset((int)value, values);
+  return PN_OK;
 }

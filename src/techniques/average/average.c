@@ -1,4 +1,6 @@
 /* The average of many hard shadow maps: slow, simple, and with enough of them right. */
+#include "gl/host.h"
+#include "maps/maps.h"
 #include "techniques/technique.h"
 
 /* Maps are drawn and read in batches: as many layers as a block holds. */
@@ -21,7 +23,7 @@ static void preset(int choice, double *values) {
   values[SAMPLES] = samples[choice];
 }
 
-/* It draws its maps itself, batch by batch; pn_maps_update only finds out whether anything casts. */
+/* It draws its maps itself, batch by batch; pn_maps_update only finds out whether anything casts, and has the host draw. */
 static void want(const double *values, pni_maps_want *out) {
   (void)values;
   *out = (pni_maps_want){0};
@@ -37,149 +39,190 @@ static double mirrored(uint32_t i) {
 
 /* Point i of count on [-A, A]^2: the Hammersley set, moved to the middle of its strata. For powers of two it is a (0,
  * m, 2)-net in base 2. */
-static void light_point(const pni_frame *frame, int i, int count, double out[2]) {
-  out[0] = frame->extent[0] * (2 * (i + 0.5) / count - 1);
-  out[1] = frame->extent[1] * (2 * (mirrored((uint32_t)i) + 0.5 / count) - 1);
+static void light_point(const pni_emission *emission, int i, int count, double out[2]) {
+  out[0] = emission->extent[0] * (2 * (i + 0.5) / count - 1);
+  out[1] = emission->extent[1] * (2 * (mirrored((uint32_t)i) + 0.5 / count) - 1);
+}
+
+/* ---- what it keeps ----------------------------------------------------------------------------------------------- */
+
+/* Maps are drawn when they are read, one batch after the other into the same images. Where the host's callbacks draw casters,
+ * which is for pn_maps_update alone, all batches are drawn then and kept. */
+typedef struct {
+  pni_maps *batches;
+  int count;
+  pni_buffer block; /* of the batch that is read */
+  bool drawn;       /* in the last update: one for every BATCH samples */
+} light_state;
+
+static void release_light(pni_gpu *gpu, void *data, bool abandon) {
+  light_state *state = data;
+  for (int i = 0; i < state->count; i++) pni_maps_free(gpu, &state->batches[i], abandon);
+  pni_free(gpu, state->batches);
+  pni_buffer_free(gpu, &state->block, abandon);
+  *state = (light_state){0};
 }
 
 typedef struct {
-  const pni_visibility_request *request;
-  int width, height; /* of the images */
-  int current;       /* which work image holds the counts */
-  pni_light_block block;
-} averaging;
+  pni_texture counts[2]; /* seen, above the horizon: before and after a batch, in turn */
+} pair_state;
 
-static void fit_point(const averaging *a, const double shear[2], pni_fit_result *fit) {
-  const pni_visibility_request *r = a->request;
-  pni_fit_request request = {.frame = r->frame,
+static void release_pair(pni_gpu *gpu, void *data, bool abandon) {
+  pair_state *state = data;
+  for (int i = 0; i < 2; i++) pni_texture_free(gpu, &state->counts[i], abandon);
+}
+
+static int batch_count(const pni_job *job) { return ((int)job->values[SAMPLES] + BATCH - 1) / BATCH; }
+
+/* Room for so many batches; what more there is goes. */
+static pn_result shape_batches(const pni_job *job, int count) {
+  light_state *state = job->light_state;
+  pni_gpu *gpu = job->gpu;
+  if (state->count != count) {
+    release_light(gpu, state, false);
+    state->batches = pni_allocate_zero(gpu, (size_t)count * sizeof *state->batches);
+    if (!state->batches) return PN_ERROR_OUT_OF_MEMORY;
+    state->count = count;
+  }
+  static const pni_maps_want one = {.near_layers = 1};
+  pn_result result = PN_OK;
+  for (int i = 0; i < count && result == PN_OK; i++)
+    result = pni_maps_shape(gpu, &state->batches[i], &one, BATCH, job->desc->map_width, job->desc->map_height);
+  return result;
+}
+
+/* ---- maps -------------------------------------------------------------------------------------------------------- */
+
+static void fit_point(const pni_job *job, const double shear[2], pni_fit_result *fit) {
+  pni_fit_request request = {.frame = job->frame,
+                             .emission = job->emission,
                              .shear = {shear[0], shear[1]},
-                             .near_distance = r->desc->near_distance,
-                             .range = r->desc->range,
-                             .width = r->desc->map_width,
-                             .height = r->desc->map_height,
-                             .given = r->desc->fit == PN_FIT_GIVEN ? r->desc->fit_bounds : NULL,
-                             .visible = r->visible};
-  pni_fit_maps(r->casters, r->groups, &request, fit);
+                             .near_distance = job->desc->near_distance,
+                             .range = job->desc->range,
+                             .width = job->desc->map_width,
+                             .height = job->desc->map_height,
+                             .given = job->desc->fit == PN_FIT_GIVEN ? job->desc->fit_bounds : NULL,
+                             .visible = job->visible};
+  pni_fit_maps(job->casters, job->groups, &request, fit);
   if (!fit->empty) return;
   request.visible = NULL; /* from this point no caster shadows anything seen: any map will do */
-  pni_fit_maps(r->casters, r->groups, &request, fit);
+  pni_fit_maps(job->casters, job->groups, &request, fit);
 }
 
 /* A map from one point is never split: its border tiles would cost as much as more points. */
-static pn_result draw_map(averaging *a, int map, const double shear[2]) {
-  const pni_visibility_request *r = a->request;
+static pn_result draw_map(const pni_job *job, pni_maps *batch, const double shear[2]) {
   pni_fit_result fit;
-  fit_point(a, shear, &fit);
-  pni_map_draw draw = {.frame = r->frame,
-                       .casters = r->casters,
-                       .groups = r->groups,
-                       .map = map,
+  fit_point(job, shear, &fit);
+  pni_map_draw draw = {.frame = job->frame,
+                       .casters = job->casters,
+                       .groups = job->groups,
                        .bounds = {fit.bounds[0], fit.bounds[1], fit.bounds[2], fit.bounds[3]},
                        .w_near = fit.w_near,
                        .w_far = fit.w_far,
                        .shear = {shear[0], shear[1]}};
   if (fit.tiles == 1)
     for (int i = 0; i < 4; i++) draw.bounds[i] = fit.tile[0][i];
-  pni_block_map(&a->block, r->gpu, &draw, r->desc->map_width, r->desc->map_height);
-  return pni_maps_draw(r->gpu, r->maps, &draw);
+  return pni_maps_add(job->gpu, batch, &draw);
 }
 
-static pn_result average_program(pni_gpu *gpu, const pn_receiver *receiver, const pni_program **out) {
-  char defines[PNI_RECEIVER_DEFINES] = "PN_NORMALS 0\nPN_MASK 0\n";
-  if (receiver) pni_receiver_defines(receiver, defines);
-  pni_program_key key = {"shaders/screen.vert.glsl", "techniques/average/average.frag.glsl", NULL, defines};
-  return pni_program_get(gpu, &key, out);
-}
-
-static pn_result add_batch(averaging *a, int count) {
-  const pni_visibility_request *r = a->request;
-  const pni_program *program;
-  pn_result result = average_program(r->gpu, r->receiver, &program);
-  a->block.maps[0] = (float)count;
-  if (result == PN_OK) result = pni_uniform_buffer_set(r->gpu, r->block, &a->block, sizeof a->block);
-  if (result != PN_OK) return result;
-  pni_texture *from = &r->pair->work[a->current], *to = &r->pair->work[!a->current];
-  pni_pass pass = {.color = {{to->id, to->target, 0, 0}}, .width = a->width, .height = a->height};
-  result = pni_screen_begin(r->gpu, &pass, program);
-  if (result != PN_OK) return result;
-  GL(r->gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PNI_BLOCK_BINDING, r->block->id);
-  pni_receiver_bind(r->receiver, program, r->frame, 1);
-  pni_bind_texture(r->gpu, PNI_UNIT_MAPS, GL_TEXTURE_2D_ARRAY, r->maps->depth.id, false);
-  pni_bind_texture(r->gpu, PNI_UNIT_WORK, GL_TEXTURE_2D, from->id, false);
-  pni_draw_screen(r->gpu);
-  a->current = !a->current;
-  return PN_OK;
-}
-
-static void start_block(averaging *a) {
-  const pni_visibility_request *r = a->request;
-  pni_block_frame(&a->block, r->frame, r->gpu, BATCH, 1, r->desc->map_width, r->desc->map_height);
-}
-
-static pn_result clear_counts(averaging *a) {
-  const pni_visibility_request *r = a->request;
-  pni_texture *work = &r->pair->work[a->current];
-  pni_pass pass = {.color = {{work->id, work->target, 0, 0}}, .width = a->width, .height = a->height};
-  pn_result result = pni_pass_begin(r->gpu, &pass);
-  static const GLfloat zero[4] = {0, 0, 0, 0};
-  if (result == PN_OK) GL(r->gpu, ClearBufferfv)(GL_COLOR, 0, zero);
-  return result;
-}
-
-static pn_result resolve_program(pni_gpu *gpu, const pni_program **out) {
-  pni_program_key key = {"shaders/screen.vert.glsl", "techniques/average/resolve.frag.glsl", NULL, ""};
-  return pni_program_get(gpu, &key, out);
-}
-
-static pn_result resolve(averaging *a) {
-  const pni_visibility_request *r = a->request;
-  const pni_program *program;
-  pn_result result = resolve_program(r->gpu, &program);
-  if (result != PN_OK) return result;
-  pni_pass pass = {.color = {r->target}, .width = a->width, .height = a->height};
-  result = pni_screen_begin(r->gpu, &pass, program);
-  if (result != PN_OK) return result;
-  pni_bind_texture(r->gpu, PNI_UNIT_WORK, GL_TEXTURE_2D, r->pair->work[a->current].id, false);
-  pni_draw_screen(r->gpu);
-  return PN_OK;
-}
-
-static pn_result shape(averaging *a) {
-  const pni_visibility_request *r = a->request;
-  static const pni_maps_want one = {.near_layers = 1};
-  pn_result result = pni_maps_shape(r->gpu, r->maps, &one, BATCH, r->desc->map_width, r->desc->map_height);
-  for (int i = 0; i < 2 && result == PN_OK; i++)
-    result = pni_texture_shape(r->gpu, &r->pair->work[i], GL_RG32F, a->width, a->height, 0, 1);
-  return result;
-}
-
-static pn_result draw(const pni_visibility_request *r) {
-  averaging a = {.request = r, .width = r->receiver->desc.width, .height = r->receiver->desc.height};
-  int samples = (int)r->values[SAMPLES];
-  pn_result result = shape(&a);
-  if (result == PN_OK) result = clear_counts(&a);
-  start_block(&a);
-  for (int i = 0; i < samples && result == PN_OK; i++) {
+static pn_result draw_batch(const pni_job *job, int index, pni_maps *batch) {
+  int samples = (int)job->values[SAMPLES];
+  pn_result result = PN_OK;
+  pni_maps_describe(job->gpu, batch, job->frame, job->emission);
+  for (int i = BATCH * index; i < BATCH * (index + 1) && i < samples && result == PN_OK; i++) {
     double point[2];
-    light_point(r->frame, i, samples, point);
-    result = draw_map(&a, i % BATCH, point);
-    bool last = i % BATCH == BATCH - 1 || i == samples - 1;
-    if (result != PN_OK || !last) continue;
-    result = add_batch(&a, i % BATCH + 1);
-    start_block(&a);
+    light_point(job->emission, i, samples, point);
+    result = draw_map(job, batch, point);
   }
-  if (result == PN_OK) result = resolve(&a);
-  pni_clock_mark(r->gpu, &r->pair->clock, "visibility");
   return result;
 }
 
-static pn_result prepare(pni_gpu *gpu, const double *values) {
-  (void)values;
-  const pni_program *program;
-  pn_result result = average_program(gpu, NULL, &program);
-  if (result == PN_OK) result = resolve_program(gpu, &program);
-  return result == PN_OK ? pni_casters_prepare(gpu, false) : result;
+static pn_result update(const pni_job *job) {
+  light_state *state = job->light_state;
+  int count = batch_count(job);
+  state->drawn = false;
+  if (!pni_casters_call_host(job->casters, job->groups)) return PN_OK;
+  pn_result result = shape_batches(job, count);
+  for (int i = 0; i < count && result == PN_OK; i++) result = draw_batch(job, i, &state->batches[i]);
+  state->drawn = result == PN_OK;
+  return result;
 }
+
+/* ---- counting ---------------------------------------------------------------------------------------------------- */
+
+static pn_result clear_counts(const pni_job *job, const pni_texture *counts) {
+  static const float zero[4] = {0, 0, 0, 0};
+  pni_pass pass = {.name = "average, counts",
+                   .color = {pni_image_of(counts, 0, 0)},
+                   .clear = zero,
+                   .width = counts->width,
+                   .height = counts->height};
+  return pni_pass_begin(job->gpu, &pass);
+}
+
+static pn_result add_batch(const pni_job *job, const pni_maps *batch, const pni_texture *from, const pni_texture *to) {
+  light_state *state = job->light_state;
+  pni_gpu *gpu = job->gpu;
+  char defines[PNI_RECEIVER_DEFINES];
+  pni_receiver_defines(job->receiver, defines);
+  pn_result result = pni_buffer_fill(gpu, &state->block, "light", PNI_BUFFER_BLOCK, &batch->block, sizeof batch->block);
+  if (result != PN_OK) return result;
+  pni_bind_block(gpu, &state->block);
+  pni_pass pass = {.name = "average",
+                   .program = {.fragment = "techniques/average/average.frag.glsl", .defines = defines},
+                   .color = {pni_image_of(to, 0, 0)},
+                   .width = to->width,
+                   .height = to->height};
+  result = pni_pass_begin(gpu, &pass);
+  if (result != PN_OK) return result;
+  pni_receiver_uniforms(job->receiver, job->frame, 1);
+  pni_set_texture(gpu, "pn_maps", &batch->depth);
+  pni_set_texture(gpu, "pn_counts", from);
+  pni_draw_screen(gpu);
+  return PN_OK;
+}
+
+static pn_result resolve(const pni_job *job, const pni_texture *counts) {
+  pni_pass pass =
+      pni_job_pass(job, "average, resolved", (pni_program_key){.fragment = "techniques/average/resolve.frag.glsl"});
+  pn_result result = pni_pass_begin(job->gpu, &pass);
+  if (result != PN_OK) return result;
+  pni_set_texture(job->gpu, "pn_counts", counts);
+  pni_draw_screen(job->gpu);
+  return PN_OK;
+}
+
+static pn_result shape(const pni_job *job) {
+  light_state *state = job->light_state;
+  pair_state *pair = job->pair_state;
+  const pn_receiver_desc *view = &job->receiver->desc;
+  pn_result result = state->drawn ? PN_OK : shape_batches(job, 1);
+  for (int i = 0; i < 2 && result == PN_OK; i++)
+    result =
+        pni_texture_shape(job->gpu, &pair->counts[i], "average counts", PNI_RG32F, view->width, view->height, 0, 1);
+  return result;
+}
+
+static pn_result draw(const pni_job *job) {
+  light_state *state = job->light_state;
+  pair_state *pair = job->pair_state;
+  if (!state->drawn && !job->casters)
+    return pni_fail(job->gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE,
+                    "the casters of the last pn_maps_update are gone");
+  int count = batch_count(job);
+  pn_result result = shape(job);
+  if (result == PN_OK) result = clear_counts(job, &pair->counts[0]);
+  for (int i = 0; i < count && result == PN_OK; i++) {
+    pni_maps *batch = &state->batches[state->drawn ? i : 0];
+    if (!state->drawn) result = draw_batch(job, i, batch);
+    if (result == PN_OK) result = add_batch(job, batch, &pair->counts[i & 1], &pair->counts[!(i & 1)]);
+  }
+  if (result == PN_OK) result = resolve(job, &pair->counts[count & 1]);
+  pni_job_mark(job, "visibility");
+  return result;
+}
+
+static void sketch(double *values) { values[SAMPLES] = 1; }
 
 const pni_technique_class pni_technique_average = {
     .table = {.name = "average",
@@ -190,6 +233,10 @@ const pni_technique_class pni_technique_average = {
               .self_shadows = 1},
     .want = want,
     .preset = preset,
+    .sketch = sketch,
     .draw = draw,
-    .prepare = prepare,
+    .update = update,
+    .stage = "depth_map",
+    .light_kind = {.bytes = sizeof(light_state), .release = release_light},
+    .pair_kind = {.bytes = sizeof(pair_state), .release = release_pair},
 };

@@ -5,12 +5,12 @@
 #include "receiver/surface.glsl"
 
 uniform highp sampler2DArray pn_maps;
-uniform highp sampler2D pn_work; // seen, above the horizon
+uniform highp sampler2D pn_counts; // seen, above the horizon
 layout(location = 0) out vec4 pn_out;
 
 // Whether the receiver sees the point of the light that this map was drawn from.
-bool pn_sees(pn_Receiver r, int map) {
-  vec2 light_point = pn_lights[0].map_depth[map].zw;
+bool pn_sees(pn_ShadedPoint r, int map) {
+  vec2 light_point = pn_lights[0].maps[map].light_point;
   ivec2 texel = ivec2(floor(pn_map_texel(0, map, pn_map_shear(0, map, r.m).xy)));
   vec3 q = pn_texel_point(0, pn_maps, map, texel);
   q.xy += light_point * q.z; // back from the sheared map
@@ -19,13 +19,13 @@ bool pn_sees(pn_Receiver r, int map) {
 
 void main() {
   ivec2 pixel = min(ivec2(gl_FragCoord.xy) * pn_offset.z + pn_offset.w, pn_view.zw - 1);
-  vec2 counts = texelFetch(pn_work, ivec2(gl_FragCoord.xy), 0).rg;
+  vec2 counts = texelFetch(pn_counts, ivec2(gl_FragCoord.xy), 0).rg;
   if (pn_receives(pixel)) {
     pn_Surface s = pn_surface(pixel);
-    pn_Receiver r = pn_receiver(0, s.p, s.error, s.n, s.sigma);
+    pn_ShadedPoint r = pn_shaded_point(0, s.p, s.error, s.n, s.sigma);
     if (!pn_unlit(0, r))
       for (int map = 0; map < pn_map_count(0); map++) {
-        if (pn_horizon(r.n, r.k, pn_lights[0].map_depth[map].zw) <= 0.0) continue;
+        if (pn_horizon(r.n, r.k, pn_lights[0].maps[map].light_point) <= 0.0) continue;
         counts += vec2(pn_sees(r, map) ? 1.0 : 0.0, 1.0);
       }
   }

@@ -1,9 +1,9 @@
 // Counts to visibility: the seen share of what is above the horizon, 1 where nothing is.
 #include "shaders/precision.glsl"
-uniform highp sampler2D pn_work;
+uniform highp sampler2D pn_counts;
 layout(location = 0) out vec4 pn_out;
 
 void main() {
-  vec2 counts = texelFetch(pn_work, ivec2(gl_FragCoord.xy), 0).rg;
+  vec2 counts = texelFetch(pn_counts, ivec2(gl_FragCoord.xy), 0).rg;
   pn_out = vec4(vec3(counts.y > 0.0 ? counts.x / counts.y : 1.0), 1.0);
 }

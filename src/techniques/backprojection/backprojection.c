@@ -34,9 +34,7 @@ static pni_search_values search_values(const double *values) {
                              .hierarchy = (pni_hierarchy)values[HIERARCHY],
                              .gaps = values[GAPS] != 0 && values[PRIMITIVE] == PNI_PRIMITIVE_PATCH,
                              .edges = values[EDGES] != 0,
-                             .merge = values[MERGE],
-                             .merge_index = MERGE,
-                             .cap_index = CAP};
+                             .merge = values[MERGE]};
 }
 
 static void want(const double *values, pni_maps_want *out) {
@@ -45,9 +43,9 @@ static void want(const double *values, pni_maps_want *out) {
       .near_layers = (int)values[LAYERS], .focus = pni_search_focus(values[FOCUS]), .range = pni_search_range(&search)};
 }
 
-static void defines(const double *values, char out[PNI_TECHNIQUE_DEFINES]) {
+static void defines(const double *values, char *out, size_t size) {
   pni_search_values search = search_values(values);
-  pni_search_defines(&search, out, PNI_TECHNIQUE_DEFINES);
+  pni_search_defines(&search, out, size);
 }
 
 const pni_technique_class pni_technique_backprojection = {
@@ -60,7 +58,6 @@ const pni_technique_class pni_technique_backprojection = {
               .self_shadows = 1},
     .want = want,
     .preset = preset,
-    .shader = "techniques/backprojection/backprojection.glsl",
-    .defines = defines,
-    .searches = true,
+    .draw = pni_gather,
+    .gathering = {.shader = "techniques/backprojection/backprojection.glsl", .defines = defines, .searches = true},
 };

@@ -28,13 +28,13 @@ bool pn_cover_and_ask(inout pn_Cover c, vec2 low, vec2 high, vec2 most_low, vec2
 bool pn_is_full(pn_Cover c) { return c >= 1.0; }
 
 #include "search/search.glsl"
-#include "search/horizon.glsl"
+#include "gather/horizon.glsl"
 
-float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r) {
+pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r) {
   float above = pn_area_above(pn_extent(light), r.n.xy, r.k);
   if (above <= 0.0) return 1.0;
   float most = 0.0;
-  for (int layer = 0; layer < pn_map_layers(light); layer++) {
+  for (int layer = 0; layer < pn_layers(light); layer++) {
     float hidden = 0.0;
     for (int map = 0; map < pn_map_count(light); map++) pn_search(light, maps, range, r, map, layer, hidden);
     most = max(most, hidden);

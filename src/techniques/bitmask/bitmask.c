@@ -53,9 +53,7 @@ static pni_search_values search_values(const double *values) {
                              .hierarchy = (pni_hierarchy)values[HIERARCHY],
                              .gaps = false,
                              .edges = values[EDGES] != 0,
-                             .merge = values[MERGE],
-                             .merge_index = MERGE,
-                             .cap_index = CAP};
+                             .merge = values[MERGE]};
 }
 
 static void want(const double *values, pni_maps_want *out) {
@@ -67,11 +65,11 @@ static void want(const double *values, pni_maps_want *out) {
                          .range = pni_search_range(&search)};
 }
 
-static void defines(const double *values, char out[PNI_TECHNIQUE_DEFINES]) {
+static void defines(const double *values, char *out, size_t size) {
   static const int codes[] = {[SAMPLES_16J] = 17, [SAMPLES_8] = 8, [SAMPLES_16] = 16, [SAMPLES_32] = 32};
   pni_search_values search = search_values(values);
-  int length = pni_search_defines(&search, out, PNI_TECHNIQUE_DEFINES);
-  snprintf(out + length, (size_t)(PNI_TECHNIQUE_DEFINES - length), "PN_SAMPLES %d\n", codes[(int)values[SAMPLES]]);
+  int length = pni_search_defines(&search, out, size);
+  snprintf(out + length, size - (size_t)length, "PN_SAMPLES %d\n", codes[(int)values[SAMPLES]]);
 }
 
 const pni_technique_class pni_technique_bitmask = {
@@ -84,7 +82,6 @@ const pni_technique_class pni_technique_bitmask = {
               .self_shadows = 1},
     .want = want,
     .preset = preset,
-    .shader = "techniques/bitmask/bitmask.glsl",
-    .defines = defines,
-    .searches = true,
+    .draw = pni_gather,
+    .gathering = {.shader = "techniques/bitmask/bitmask.glsl", .defines = defines, .searches = true},
 };

@@ -50,7 +50,7 @@ bool pn_is_full(pn_Cover c) {
 
 #include "search/search.glsl"
 
-float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r) {
+pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r) {
   pn_Cover hidden = pn_field_empty();
   // Samples below the horizon count as hidden from the start, and are left out of the count at the end.
   bool whole = dot(abs(r.n.xy), pn_extent(light)) < -r.k;
@@ -65,7 +65,7 @@ float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray ra
 #endif
   }
   for (int map = 0; map < pn_map_count(light); map++)
-    for (int layer = 0; layer < pn_map_layers(light); layer++) {
+    for (int layer = 0; layer < pn_map_layers(light, map); layer++) {
       pn_search(light, maps, range, r, map, layer, hidden);
       if (pn_is_full(hidden)) return 0.0;
     }

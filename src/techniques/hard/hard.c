@@ -12,5 +12,6 @@ const pni_technique_class pni_technique_hard = {
               .forward = 1,
               .self_shadows = 1},
     .want = want,
-    .shader = "techniques/hard/hard.glsl",
+    .draw = pni_gather,
+    .gathering = {.shader = "techniques/hard/hard.glsl"},
 };

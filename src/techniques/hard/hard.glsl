@@ -1,7 +1,7 @@
 // A hard shadow: the map's sample on the line to the light's centre. The light's size plays no part.
 #include "search/lookup.glsl"
 
-float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r) {
+pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r) {
   int map = pn_map_at(light, r.m.xy);
   ivec2 texel = ivec2(floor(pn_map_texel(light, map, r.m.xy)));
   return 1.0 - pn_texel_blocks(light, maps, map, r, texel);

@@ -22,5 +22,6 @@ const pni_technique_class pni_technique_pcf = {
               .forward = 1,
               .self_shadows = 1},
     .want = want,
-    .shader = "techniques/pcf/pcf.glsl",
+    .draw = pni_gather,
+    .gathering = {.shader = "techniques/pcf/pcf.glsl"},
 };

@@ -3,7 +3,7 @@
 #include "search/lookup.glsl"
 
 // A texel counted from one tile of a wide light, which may lie in another.
-float pn_tap(int light, highp sampler2DArray maps, int map, pn_Receiver r, ivec2 texel) {
+float pn_tap(int light, highp sampler2DArray maps, int map, pn_ShadedPoint r, ivec2 texel) {
   if (pn_map_count(light) > 1) {
     vec2 st = pn_map_st(light, map, vec2(texel) + 0.5);
     map = pn_map_at(light, st);
@@ -13,7 +13,7 @@ float pn_tap(int light, highp sampler2DArray maps, int map, pn_Receiver r, ivec2
 }
 
 // A box of n x n texels centred on the position: texels at its border count by the part that lies inside.
-float pn_box(int light, highp sampler2DArray maps, int map, pn_Receiver r, vec2 at, int n) {
+float pn_box(int light, highp sampler2DArray maps, int map, pn_ShadedPoint r, vec2 at, int n) {
   vec2 low = at - 0.5 * float(n);
   ivec2 first = ivec2(floor(low));
   float blocked = 0.0;
@@ -32,7 +32,7 @@ vec4 pn_cubic(float f) {
   return vec4(g * g * g, 3.0 * f * f * (f - 2.0) + 4.0, 3.0 * g * g * (g - 2.0) + 4.0, f * f * f) / 6.0;
 }
 
-float pn_bicubic(int light, highp sampler2DArray maps, int map, pn_Receiver r, vec2 at) {
+float pn_bicubic(int light, highp sampler2DArray maps, int map, pn_ShadedPoint r, vec2 at) {
   ivec2 base = ivec2(floor(at - 0.5));
   vec2 f = at - 0.5 - vec2(base);
   vec4 wx = pn_cubic(f.x), wy = pn_cubic(f.y);
@@ -43,10 +43,10 @@ float pn_bicubic(int light, highp sampler2DArray maps, int map, pn_Receiver r, v
   return blocked;
 }
 
-float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r) {
+pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r) {
   int map = pn_map_at(light, r.m.xy);
   vec2 at = pn_map_texel(light, map, r.m.xy);
-  bool bicubic = pn_parameter(light, 0) > 0.5;
+  bool bicubic = pn_parameter(light, PN_PARAMETER_FILTER) > 0.5;
   return 1.0 - (bicubic ? pn_bicubic(light, maps, map, r, at)
-                        : pn_box(light, maps, map, r, at, int(pn_parameter(light, 1))));
+                        : pn_box(light, maps, map, r, at, int(pn_parameter(light, PN_PARAMETER_TAPS))));
 }

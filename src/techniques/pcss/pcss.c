@@ -33,5 +33,6 @@ const pni_technique_class pni_technique_pcss = {
               .self_shadows = 1},
     .want = want,
     .preset = preset,
-    .shader = "techniques/pcss/pcss.glsl",
+    .draw = pni_gather,
+    .gathering = {.shader = "techniques/pcss/pcss.glsl"},
 };

@@ -10,7 +10,7 @@ vec2 pn_cell(int i, int n) { return (2.0 * vec2(i % n, i / n) + 1.0) / float(n) 
 // Blockers among n x n samples of the window that belongs to casters at w: adds their w, and their weights. What a
 // sample hides of the light is its share of the map over (w - w_R)^2; that is its weight. inner: the middle quarter
 // is left to a finer step.
-vec2 pn_search_step(int light, highp sampler2DArray maps, pn_Receiver r, int n, float w, bool inner) {
+vec2 pn_search_step(int light, highp sampler2DArray maps, pn_ShadedPoint r, int n, float w, bool inner) {
   vec2 window = pn_search_window(pn_extent(light), w, r.m.z);
   vec2 share = window / (float(n) * pn_extent(light));
   float cell = share.x * share.y;
@@ -22,7 +22,7 @@ vec2 pn_search_step(int light, highp sampler2DArray maps, pn_Receiver r, int n, 
     int map = pn_map_at(light, st);
     vec3 q = pn_texel_point(light, maps, map, ivec2(floor(pn_map_texel(light, map, st))));
     // A texel that does not project onto the light blocks nothing, though it lies in the window of a nearer one.
-    vec2 reach = pn_search_window(pn_extent(light), q.z, r.m.z) + 0.5 / pn_lights[light].map_bounds[map].zw;
+    vec2 reach = pn_search_window(pn_extent(light), q.z, r.m.z) + 0.5 / pn_lights[light].maps[map].density;
     if (!pn_blocks_apart(light, r, q) || any(greaterThan(abs(q.xy - r.m.xy), reach))) continue;
     // All samples together hide no more than the light, also where they fall into one texel close before the receiver.
     float weight = min(cell / ((q.z - r.m.z) * (q.z - r.m.z)), 1.0 / float(n * n));
@@ -34,8 +34,8 @@ vec2 pn_search_step(int light, highp sampler2DArray maps, pn_Receiver r, int n, 
 // Average w of the blockers; PN_NOTHING without any. Casters far from the light lie in a small part of the window
 // only, which n x n samples may miss: the middle is searched again, four times finer, until samples lie a texel
 // apart.
-float pn_blockers(int light, highp sampler2DArray maps, pn_Receiver r, int n, float w_max) {
-  vec2 texels = 2.0 * pn_search_window(pn_extent(light), w_max, r.m.z) * pn_lights[light].map_bounds[0].zw / float(n);
+float pn_blockers(int light, highp sampler2DArray maps, pn_ShadedPoint r, int n, float w_max) {
+  vec2 texels = 2.0 * pn_search_window(pn_extent(light), w_max, r.m.z) / pn_texel_size(light) / float(n);
   float spacing = max(texels.x, texels.y);
   float reach = w_max - r.m.z;
   vec2 sum = vec2(0.0);
@@ -49,8 +49,8 @@ float pn_blockers(int light, highp sampler2DArray maps, pn_Receiver r, int n, fl
   return sum.y > 0.0 ? sum.x / sum.y : PN_NOTHING;
 }
 
-float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_Receiver r) {
-  int n = int(pn_parameter(light, 1));
+pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r) {
+  int n = int(pn_parameter(light, PN_PARAMETER_SAMPLES));
   float w_max = pn_window_nearest(light, range, r);
   if (w_max <= r.m.z + r.epsilon_w) return 1.0;
   float w_blockers = pn_blockers(light, maps, r, n, w_max);

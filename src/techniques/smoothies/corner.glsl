@@ -1,5 +1,5 @@
 // The corners of a silhouette.
-#include "casters/edges.glsl"
+#include "silhouettes/edges.glsl"
 
 #define PN_RING_MAX 64 // edges at a vertex that are looked at
 
@@ -15,7 +15,7 @@ float pn_turn(vec2 along, vec2 outward, vec2 v) {
 vec2 pn_next_normal(int self, uint vertex, vec2 along, vec2 outward) {
   vec3 p = pn_vertex(vertex);
   if (!pn_before_cut(p)) return vec2(0.0);
-  vec2 at = pn_map_point(p, pn_edge_sun()).xy;
+  vec2 at = pn_map_point(p, pn_edge_parallel()).xy;
   uvec2 ring = texelFetch(pn_rings, pn_entry(int(vertex)), 0).xy;
   float best = 4.0;
   vec2 normal = vec2(0.0);

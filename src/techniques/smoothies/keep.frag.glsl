@@ -8,7 +8,7 @@ layout(location = 0) out vec4 pn_kept_out;
 
 // Whether the nearest caster beside a point of the edge lies before it.
 bool pn_hidden(vec3 p, vec2 outward) {
-  vec2 texel = 1.0 / pn_lights[0].map_bounds[0].zw;
+  vec2 texel = pn_texel_size(0);
   vec2 st = p.xy + outward * max(texel.x, texel.y);
   int map = pn_map_at(0, st);
   return pn_map_fetch(0, pn_maps, map, 0, ivec2(floor(pn_map_texel(0, map, st)))) > p.z;
@@ -16,12 +16,12 @@ bool pn_hidden(vec3 p, vec2 outward) {
 
 // Edges shorter than two texels are judged by their ends; longer ones may be seen between them.
 bool pn_edge_hidden(vec3 p, vec3 q, vec2 outward) {
-  vec2 texels = abs(q.xy - p.xy) * pn_lights[0].map_bounds[0].zw;
+  vec2 texels = abs(q.xy - p.xy) / pn_texel_size(0);
   return max(texels.x, texels.y) < 2.0 && pn_hidden(p, outward) && pn_hidden(q, outward);
 }
 
 void main() {
-  int edge = min(int(gl_FragCoord.y) * PN_EDGE_ROW + int(gl_FragCoord.x), pn_count.x - 1);
+  int edge = min(int(gl_FragCoord.y) * PN_EDGE_ROW + int(gl_FragCoord.x), pn_mesh.x - 1);
   float side = pn_side(edge);
   uvec4 v = pn_edge(edge);
   vec3 a = pn_vertex(v.x), b = pn_vertex(v.y);

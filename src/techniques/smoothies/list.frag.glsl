@@ -2,6 +2,9 @@
 #include "shaders/precision.glsl"
 #include "techniques/smoothies/smoothie.glsl"
 
+uniform highp ivec4 pn_count;        // entries of the highest sums
+uniform highp sampler2D pn_kept;      // 1 for silhouettes that have a smoothie
+
 uniform highp sampler2D pn_sums_low; // among 64 edges, 64 of those, 64 of those
 uniform highp sampler2D pn_sums_middle;
 uniform highp sampler2D pn_sums_high;
@@ -21,7 +24,7 @@ void main() {
   int place = int(gl_FragCoord.y) * PN_EDGE_ROW + int(gl_FragCoord.x);
   int total = int(texelFetch(pn_total, ivec2(0), 0).x / 12u), first = 0;
   bool some = place < total;
-  pn_descend(pn_sums_high, some ? pn_count.z : 0, first, place);
+  pn_descend(pn_sums_high, some ? pn_count.x : 0, first, place);
   first *= 64;
   pn_descend(pn_sums_middle, some ? 64 : 0, first, place);
   first *= 64;

@@ -18,12 +18,12 @@ float pn_corner_kappa(vec2 o) {
   bool fixed_width = pn_width.x > 0.0;
   vec2 extent = fixed_width ? pn_width.xx : pn_extent(0), size = abs(o) / extent;
   if (pn_shape.x > 1.5) return max(size.x, size.y);
-  float rounded = fixed_width ? length(size) : dot(o, o) / max(dot(abs(o), extent), 1e-30);
+  float rounded = fixed_width ? length(size) : dot(o, o) / max(dot(abs(o), extent), PN_TINY);
   return mix(rounded, max(rounded, max(pn_linear.x, pn_linear.y)), pn_shape.y);
 }
 
 void main() {
   float w = pn_linear.z, kappa = pn_shape.x > 0.5 ? pn_corner_kappa(pn_offset_out) : pn_linear.x;
-  if (pn_width.x > 0.0 && !pn_is_sun(0)) kappa *= w;
+  if (pn_width.x > 0.0 && !pn_is_parallel(0)) kappa *= w;
   pn_out = (pn_samples(0) - w) / max(kappa, 1e-9 * pn_sample_step(0));
 }

@@ -13,14 +13,14 @@ out highp vec3 pn_linear;       // kappa along this edge's normal, along the nei
 flat out highp vec2 pn_shape;   // 0 along the edge, 1 a rounded corner, 2 one shaped like the light; how sharp
 
 float pn_seam() {
-  vec2 texel = 1.0 / pn_lights[0].map_bounds[pn_mode.x].zw;
-  return 2.0 * pn_lights[0].range.w * max(texel.x, texel.y);
+  vec2 texel = pn_map_texel_size(0, pn_mode.x);
+  return 2.0 * pn_lights[0].raster_error * max(texel.x, texel.y);
 }
 
 void pn_place(vec2 st, float w) {
   vec2 texel = pn_map_texel(0, pn_mode.x, st);
-  vec4 depth = pn_lights[0].map_depth[pn_mode.x];
-  gl_Position = vec4(2.0 * texel / vec2(pn_map_size(0)) - 1.0, 2.0 * (w - depth.x) / depth.y - 1.0, 1.0);
+  vec2 depth = pn_lights[0].maps[pn_mode.x].w_of_depth;
+  gl_Position = vec4(2.0 * texel / vec2(pn_map_size(0, pn_mode.x)) - 1.0, 2.0 * (w - depth.x) / depth.y - 1.0, 1.0);
 }
 
 // index 0..5 of the two triangles along the edge.

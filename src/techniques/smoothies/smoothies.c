@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-#include "casters/silhouettes.h"
-#include "search/gather.h"
+#include "gl/host.h"
+#include "silhouettes/silhouettes.h"
 
 enum { PRESET, GEOMETRY, WIDTH, FILTER, COUNT };
 
@@ -32,206 +32,207 @@ static void preset(int choice, double *values) {
 }
 
 static void want(const double *values, pni_maps_want *out) {
-  *out = (pni_maps_want){
-      .near_layers = 1, .range = {.structure = PNI_RANGE_OWN}, .reach = true, .reach_width = values[WIDTH]};
+  *out =
+      (pni_maps_want){.near_layers = 1, .reach = true, .reach_width = values[WIDTH], .variant = (int)values[GEOMETRY]};
 }
 
-/* ---- programs ---------------------------------------------------------------------------------------------------- */
+/* ---- what it keeps for a light ----------------------------------------------------------------------------------- */
 
-static pn_result smoothie_program(pni_gpu *gpu, const pni_program **out) {
-  pni_program_key key = {"techniques/smoothies/smoothie.vert.glsl", "techniques/smoothies/smoothie.frag.glsl", NULL,
-                         ""};
-  return pni_program_get(gpu, &key, out);
+enum { SUMMED = 64, LEVELS = 3 };
+
+typedef struct {
+  pni_texture image; /* the smoothies, a layer for each map */
+  /* Filled anew for each instance; as large as the largest mesh needs. */
+  pni_texture kept;         /* 1 for silhouettes that have a smoothie to draw */
+  pni_texture sums[LEVELS]; /* of those among 64 edges, 64 of those, 64 of those */
+  pni_texture total, list;  /* the draw's arguments; the edges that have one */
+  pni_buffer arguments;
+  bool told; /* that some casters have no edges to find */
+} smoothies;
+
+static void release(pni_gpu *gpu, void *state, bool abandon) {
+  smoothies *s = state;
+  pni_texture *all[] = {&s->image, &s->kept, &s->sums[0], &s->sums[1], &s->sums[2], &s->total, &s->list};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) pni_texture_free(gpu, all[i], abandon);
+  pni_buffer_free(gpu, &s->arguments, abandon);
 }
 
-typedef enum { KEEP_PASS, FIRST_SUM_PASS, SUM_PASS, COUNT_PASS, LIST_PASS, PASS_COUNT } table_pass;
-
-static pn_result table_program(pni_gpu *gpu, table_pass pass, const pni_program **out) {
-  static const struct {
-    const char *fragment, *defines;
-  } passes[PASS_COUNT] = {{"techniques/smoothies/keep.frag.glsl", ""},
-                          {"techniques/smoothies/sum.frag.glsl", "PN_FIRST 1\n"},
-                          {"techniques/smoothies/sum.frag.glsl", "PN_FIRST 0\n"},
-                          {"techniques/smoothies/count.frag.glsl", ""},
-                          {"techniques/smoothies/list.frag.glsl", ""}};
-  pni_program_key key = {"shaders/screen.vert.glsl", passes[pass].fragment, NULL, passes[pass].defines};
-  return pni_program_get(gpu, &key, out);
+static const pni_texture *image(const void *state, int index, const char **name) {
+  *name = "smoothies";
+  return index == 0 ? &((const smoothies *)state)->image : NULL;
 }
+
+static const pni_texture *beside(const void *light_state) { return &((const smoothies *)light_state)->image; }
 
 /* ---- the list of smoothies --------------------------------------------------------------------------------------- */
 
 typedef struct {
-  const pni_build_request *request;
+  const pni_job *job;
+  smoothies *state;
   pni_matrix light_from_scene;
   float cut; /* nearer than the nearest caster's plane nothing is drawn */
 } drawing;
 
-enum { SUMMED = 64, LEVELS = 3 };
-
 static size_t summed(size_t count) { return (count + SUMMED - 1) / SUMMED; }
 
-static pn_result shape_tables(pni_gpu *gpu, pni_mesh_edges *e) {
-  int rows = e->edges.height;
-  size_t count = e->count;
-  pn_result result = pni_texture_shape(gpu, &e->kept, GL_R8, PNI_EDGE_ROW, rows, 0, 1);
-  if (result == PN_OK) result = pni_texture_shape(gpu, &e->list, GL_R32UI, PNI_EDGE_ROW, rows, 0, 1);
-  if (result == PN_OK) result = pni_texture_shape(gpu, &e->total, GL_RGBA32UI, 1, 1, 0, 1);
+/* A table of so many entries, or as large as it is. */
+static pn_result grow_table(pni_gpu *gpu, pni_texture *t, const char *label, pni_format format, size_t entries) {
+  int rows = (int)((entries + PNI_EDGE_ROW - 1) / PNI_EDGE_ROW);
+  return pni_texture_shape(gpu, t, label, format, PNI_EDGE_ROW, rows > t->height ? rows : t->height, 0, 1);
+}
+
+static pn_result shape_tables(pni_gpu *gpu, smoothies *s, size_t count) {
+  pn_result result = grow_table(gpu, &s->kept, "smoothies kept", PNI_R8, count);
+  if (result == PN_OK) result = grow_table(gpu, &s->list, "smoothies list", PNI_R32UI, count);
+  if (result == PN_OK) result = pni_texture_shape(gpu, &s->total, "smoothies total", PNI_RGBA32UI, 1, 1, 0, 1);
   for (int i = 0; i < LEVELS && result == PN_OK; i++) {
     count = summed(count);
-    result = pni_texture_shape(gpu, &e->sums[i], GL_R32F, PNI_EDGE_ROW, (int)((count - 1) / PNI_EDGE_ROW) + 1, 0, 1);
+    result = grow_table(gpu, &s->sums[i], "smoothies sums", PNI_R32F, count);
   }
   return result;
 }
 
-static void set_mode(const drawing *d, const pni_program *program, int tile) {
-  const pni_build_request *r = d->request;
-  GLint mode[4] = {tile, r->values[GEOMETRY] > 0.5};
-  GLfloat width[4] = {(float)r->values[WIDTH]};
-  GL(r->gpu, Uniform4iv)(pni_uniform(program, "pn_mode"), 1, mode);
-  GL(r->gpu, Uniform4fv)(pni_uniform(program, "pn_width"), 1, width);
-}
-
-/* Begins a pass that writes entries of a table, and binds the edges; counts: pn_count. */
-static pn_result begin_table(const drawing *d, const pni_mesh_edges *e, table_pass table, const pni_texture *to,
-                             size_t entries, const GLint counts[4]) {
-  pni_gpu *gpu = d->request->gpu;
-  const pni_program *program;
-  pn_result result = table_program(gpu, table, &program);
-  pni_pass pass = {.color = {{to->id, GL_TEXTURE_2D, 0, 0}},
-                   .width = entries < PNI_EDGE_ROW ? (int)entries : PNI_EDGE_ROW,
-                   .height = (int)((entries - 1) / PNI_EDGE_ROW) + 1};
-  if (result == PN_OK) result = pni_screen_begin(gpu, &pass, program);
-  if (result != PN_OK) return result;
-  pni_silhouettes_bind(gpu, program, e, e->count, d->request->frame->sun, d->cut);
-  GL(gpu, Uniform4iv)(pni_uniform(program, "pn_count"), 1, counts);
-  set_mode(d, program, 0);
-  return PN_OK;
-}
-
-static void draw_table(pni_gpu *gpu, int unit, const pni_texture *from) {
-  pni_bind_texture(gpu, unit, GL_TEXTURE_2D, from ? from->id : 0, false);
-  pni_draw_screen(gpu);
+static void set_mode(const drawing *d, int tile) {
+  const pni_job *job = d->job;
+  pni_set_ints(job->gpu, "pn_mode", tile, job->values[GEOMETRY] > 0.5, 0, 0);
+  pni_set_floats(job->gpu, "pn_width", (const float[4]){(float)job->values[WIDTH]});
 }
 
 static pn_result keep_seen(const drawing *d, const pni_mesh_edges *e) {
-  pni_gpu *gpu = d->request->gpu;
-  GLint counts[4] = {(GLint)e->count, d->request->frame->sun};
-  pn_result result = begin_table(d, e, KEEP_PASS, &e->kept, e->count, counts);
+  pni_gpu *gpu = d->job->gpu;
+  pn_result result =
+      pni_edge_table_begin(gpu, "smoothies kept", "techniques/smoothies/keep.frag.glsl", "", &d->state->kept, e->count);
   if (result != PN_OK) return result;
-  pni_bind_texture(gpu, PNI_UNIT_MAPS, GL_TEXTURE_2D_ARRAY, d->request->maps->depth.id, false);
-  draw_table(gpu, PNI_UNIT_ALPHA, NULL); /* no pass may have the image bound that it draws to */
+  pni_silhouettes_set(gpu, e, d->job->frame->projection, d->cut);
+  set_mode(d, 0);
+  pni_set_texture(gpu, "pn_maps", &d->job->maps->depth);
+  pni_draw_screen(gpu);
   return PN_OK;
 }
 
-static pn_result add_sums(const drawing *d, pni_mesh_edges *e) {
-  pni_gpu *gpu = d->request->gpu;
+static pn_result add_level(pni_gpu *gpu, const pni_texture *from, const pni_texture *to, size_t entries) {
+  pn_result result =
+      pni_edge_table_begin(gpu, "smoothies sums", "techniques/smoothies/sum.frag.glsl", "", to, summed(entries));
+  if (result != PN_OK) return result;
+  pni_set_ints(gpu, "pn_count", (int)entries, 0, 0, 0);
+  pni_set_texture(gpu, "pn_below", from);
+  pni_draw_screen(gpu);
+  return PN_OK;
+}
+
+static pn_result add_sums(const drawing *d, const pni_mesh_edges *e) {
+  pni_gpu *gpu = d->job->gpu;
+  smoothies *s = d->state;
   size_t count = e->count;
   pn_result result = PN_OK;
   for (int i = 0; i < LEVELS && result == PN_OK; i++) {
-    GLint counts[4] = {(GLint)count};
+    result = add_level(gpu, i ? &s->sums[i - 1] : &s->kept, &s->sums[i], count);
     count = summed(count);
-    result = begin_table(d, e, i ? SUM_PASS : FIRST_SUM_PASS, &e->sums[i], count, counts);
-    if (result == PN_OK) draw_table(gpu, PNI_UNIT_WORK, i ? &e->sums[i - 1] : NULL);
   }
-  GLint counts[4] = {(GLint)count};
-  if (result == PN_OK) result = begin_table(d, e, COUNT_PASS, &e->total, 1, counts);
+  if (result == PN_OK)
+    result = pni_edge_table_begin(gpu, "smoothies total", "techniques/smoothies/count.frag.glsl", "", &s->total, 1);
   if (result != PN_OK) return result;
-  draw_table(gpu, PNI_UNIT_WORK, &e->sums[LEVELS - 1]);
-  return pni_counts_take(gpu, &e->total, &e->arguments);
+  pni_set_ints(gpu, "pn_count", (int)count, 0, 0, 0);
+  pni_set_texture(gpu, "pn_below", &s->sums[LEVELS - 1]);
+  pni_draw_screen(gpu);
+  return pni_counts_take(gpu, &s->total, &s->arguments);
 }
 
 static pn_result make_list(const drawing *d, const pni_mesh_edges *e) {
-  pni_gpu *gpu = d->request->gpu;
-  GLint counts[4] = {(GLint)e->count, d->request->frame->sun, (GLint)summed(summed(summed(e->count)))};
-  pn_result result = begin_table(d, e, LIST_PASS, &e->list, e->count, counts);
+  pni_gpu *gpu = d->job->gpu;
+  const smoothies *s = d->state;
+  pn_result result =
+      pni_edge_table_begin(gpu, "smoothies list", "techniques/smoothies/list.frag.glsl", "", &s->list, e->count);
   if (result != PN_OK) return result;
-  pni_bind_texture(gpu, PNI_UNIT_WORK, GL_TEXTURE_2D, e->sums[0].id, false);
-  pni_bind_texture(gpu, PNI_UNIT_PEEL, GL_TEXTURE_2D, e->sums[1].id, false);
-  pni_bind_texture(gpu, PNI_UNIT_RANGE, GL_TEXTURE_2D, e->total.id, false);
-  draw_table(gpu, PNI_UNIT_SEEN, &e->sums[2]);
+  pni_set_ints(gpu, "pn_count", (int)summed(summed(summed(e->count))), 0, 0, 0);
+  pni_set_texture(gpu, "pn_kept", &s->kept);
+  pni_set_texture(gpu, "pn_sums_low", &s->sums[0]);
+  pni_set_texture(gpu, "pn_sums_middle", &s->sums[1]);
+  pni_set_texture(gpu, "pn_sums_high", &s->sums[2]);
+  pni_set_texture(gpu, "pn_total", &s->total);
+  pni_draw_screen(gpu);
   return PN_OK;
 }
 
 /* ---- drawing them ------------------------------------------------------------------------------------------------ */
 
-static pni_attachment layer(const pni_texture *texture, int tile) {
-  return (pni_attachment){texture->id, texture->target, 0, tile};
-}
-
 /* Smoothies behind the nearest caster have nothing left to darken. */
-static pn_result draw_tile(const drawing *d, pni_mesh_edges *e, int tile) {
-  const pni_build_request *r = d->request;
-  const pni_texture *to = &r->maps->range;
-  const pni_program *program;
-  pn_result result = smoothie_program(r->gpu, &program);
-  pni_pass pass = {.color = {layer(to, tile)},
-                   .depth = layer(&r->maps->depth, tile),
+static pn_result draw_tile(const drawing *d, const pni_mesh_edges *e, int tile) {
+  pni_gpu *gpu = d->job->gpu;
+  const smoothies *s = d->state;
+  pni_pass pass = {.name = "smoothies",
+                   .program = {"techniques/smoothies/smoothie.vert.glsl", "techniques/smoothies/smoothie.frag.glsl",
+                               NULL, pni_edge_defines},
+                   .color = {pni_image_of(&s->image, 0, tile)},
+                   .depth = pni_image_of(&d->job->maps->depth, 0, tile),
                    .depth_use = PNI_DEPTH_TEST,
                    .depth_clamp = true,
-                   .width = to->width,
-                   .height = to->height,
+                   .width = s->image.width,
+                   .height = s->image.height,
                    .blend = PNI_BLEND_MIN};
-  if (result == PN_OK) result = pni_screen_begin(r->gpu, &pass, program);
+  pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
-  pni_silhouettes_bind(r->gpu, program, e, e->count, r->frame->sun, d->cut);
-  set_mode(d, program, tile);
-  pni_bind_texture(r->gpu, PNI_UNIT_MAPS, GL_TEXTURE_2D_ARRAY, 0, false);
-  pni_bind_texture(r->gpu, PNI_UNIT_SEEN, GL_TEXTURE_2D, e->list.id, false);
-  pni_bind_texture(r->gpu, PNI_UNIT_RANGE, GL_TEXTURE_2D, e->total.id, false);
-  pni_draw_counted(r->gpu, &e->arguments, 0, (int)(12 * e->count));
+  pni_silhouettes_set(gpu, e, d->job->frame->projection, d->cut);
+  set_mode(d, tile);
+  pni_set_texture(gpu, "pn_list", &s->list);
+  pni_set_texture(gpu, "pn_total", &s->total);
+  pni_draw_counted(gpu, &s->arguments, 0, (int)(12 * e->count));
   return PN_OK;
 }
 
 static pn_result draw_mesh(void *user, pni_mesh_data *mesh, const pni_matrix *scene_from_object) {
   const drawing *d = user;
-  const pni_build_request *r = d->request;
+  const pni_job *job = d->job;
   pni_mesh_edges *edges;
-  pn_result result = pni_mesh_edges_get(r->gpu, mesh, &edges);
+  pn_result result = pni_mesh_edges_get(job->gpu, mesh, &edges);
   if (result != PN_OK || !edges) return result;
   pni_matrix light_from_object = pni_matrix_multiply(&d->light_from_scene, scene_from_object);
-  result = pni_silhouettes_draw(r->gpu, edges, &light_from_object, r->frame->sun, d->cut);
-  if (result == PN_OK) result = shape_tables(r->gpu, edges);
+  result = pni_silhouettes_draw(job->gpu, edges, &light_from_object, job->frame->projection, d->cut);
+  if (result == PN_OK) result = shape_tables(job->gpu, d->state, edges->count);
   if (result == PN_OK) result = keep_seen(d, edges);
   if (result == PN_OK) result = add_sums(d, edges);
   if (result == PN_OK) result = make_list(d, edges);
-  for (int tile = 0; tile < r->maps->fit.tiles && result == PN_OK; tile++) result = draw_tile(d, edges, tile);
+  for (int tile = 0; tile < job->maps->fit.tiles && result == PN_OK; tile++) result = draw_tile(d, edges, tile);
   return result;
 }
 
-static pn_result clear(const pni_build_request *r) {
-  const pni_texture *depth = &r->maps->depth;
-  int tiles = r->maps->fit.tiles;
-  pni_texture *to = &r->maps->range;
-  pn_result result = pni_texture_shape(r->gpu, to, GL_RGBA32F, depth->width, depth->height, tiles, 1);
+static pn_result clear(const pni_job *job, pni_texture *to) {
+  static const float nothing[4] = {PNI_EVERYTHING, PNI_EVERYTHING, PNI_EVERYTHING, PNI_EVERYTHING};
+  const pni_texture *depth = &job->maps->depth;
+  int tiles = job->maps->fit.tiles;
+  pn_result result = pni_texture_shape(job->gpu, to, "smoothies", PNI_RGBA32F, depth->width, depth->height, tiles, 1);
   for (int tile = 0; tile < tiles && result == PN_OK; tile++) {
-    static const GLfloat nothing[4] = {1e30f, 1e30f, 1e30f, 1e30f}; /* -PN_NOTHING of maps.glsl */
-    pni_pass pass = {.color = {layer(to, tile)}, .width = to->width, .height = to->height};
-    result = pni_pass_begin(r->gpu, &pass);
-    if (result == PN_OK) GL(r->gpu, ClearBufferfv)(GL_COLOR, 0, nothing);
+    pni_pass pass = {.name = "smoothies cleared",
+                     .color = {pni_image_of(to, 0, tile)},
+                     .clear = nothing,
+                     .width = to->width,
+                     .height = to->height};
+    result = pni_pass_begin(job->gpu, &pass);
   }
   return result;
 }
 
-static pn_result build(const pni_build_request *request) {
-  drawing d = {.request = request,
-               .light_from_scene = pni_light_from_scene(request->frame),
-               .cut = request->frame->sun ? 0 : (float)(1 / request->maps->fit.w_near)};
-  pn_result result = clear(request);
-  return result == PN_OK ? pni_casters_each_mesh(request->casters, request->groups, draw_mesh, &d) : result;
+static void tell(pni_gpu *gpu, smoothies *s, const pni_without_edges *others) {
+  if (s->told || (!others->callbacks && !others->holes)) return;
+  s->told = true;
+  pni_note(gpu, PN_LOG_WARNING, PN_MESSAGE_CASTER_MESHES,
+           "soft edges need opaque meshes: %d draw callbacks and %d alpha-textured meshes cast hard shadows",
+           others->callbacks, others->holes);
+}
+
+static pn_result update(const pni_job *job) {
+  drawing d = {.job = job,
+               .state = job->light_state,
+               .light_from_scene = pni_light_from_scene(job->frame),
+               .cut = job->frame->projection == PNI_PARALLEL ? 0 : (float)(1 / job->maps->fit.w_near)};
+  pni_without_edges others = {0};
+  pn_result result = clear(job, &d.state->image);
+  if (result == PN_OK) result = pni_casters_each_mesh(job->casters, job->groups, draw_mesh, &d, &others);
+  if (result == PN_OK) tell(job->gpu, d.state, &others);
+  return result;
 }
 
 /* ---- the class --------------------------------------------------------------------------------------------------- */
-
-static const char *const shader = "techniques/smoothies/smoothies.glsl";
-
-static pn_result prepare(pni_gpu *gpu, const double *values) {
-  (void)values;
-  const pni_program *program;
-  pn_result result = smoothie_program(gpu, &program);
-  for (int i = 0; i < PASS_COUNT && result == PN_OK; i++) result = table_program(gpu, (table_pass)i, &program);
-  if (result == PN_OK) result = pni_silhouettes_prepare(gpu);
-  return result == PN_OK ? pni_gather_prepare(gpu, shader, "") : result;
-}
 
 const pni_technique_class pni_technique_smoothies = {
     .table = {.name = "smoothies",
@@ -244,8 +245,9 @@ const pni_technique_class pni_technique_smoothies = {
               .self_shadows = 1},
     .want = want,
     .preset = preset,
-    .shader = shader,
-    .build = build,
+    .draw = pni_gather,
+    .gathering = {.shader = "techniques/smoothies/smoothies.glsl", .beside = beside},
+    .update = update,
     .stage = "smoothies",
-    .prepare = prepare,
+    .light_kind = {.bytes = sizeof(smoothies), .release = release, .image = image},
 };

@@ -11,49 +11,49 @@ float pn_smoothie(int light, highp sampler2DArray smoothies, int map, ivec2 texe
   vec2 lines = stored.yw + above * (stored.yw - stored.xz);
   if (above.y < 0.0 && above.y > -1.0) lines.y = stored.w;
   float reciprocal = max(lines.x, lines.y);
-  return reciprocal > 0.0 ? 1.0 / reciprocal : 1e30;
+  return reciprocal > 0.0 ? 1.0 / reciprocal : PN_EVERYTHING;
 }
 
 // The receiver's tangent plane around it in the map: w there is plane.z + plane.xy . (st - st_R), nearer to the light
 // by the errors that it may have within a texel.
-vec3 pn_plane(int light, pn_Receiver r) {
-  vec2 slope = r.n.xy / r.k, texel = 1.0 / pn_lights[light].map_bounds[0].zw;
+vec3 pn_plane(int light, pn_ShadedPoint r) {
+  vec2 slope = r.n.xy / r.k, texel = pn_texel_size(light);
   float lever = texel.x + texel.y + r.reach * dot(abs(slope), texel);
   // A smoothie reaches in by its seam, which may lie in this very plane.
-  float seam = 4.0 * pn_lights[light].range.w * max(texel.x, texel.y) * length(r.n.xy);
+  float seam = 4.0 * pn_lights[light].raster_error * max(texel.x, texel.y) * length(r.n.xy);
   return vec3(slope, r.m.z + r.epsilon_w - (r.epsilon_plane + seam + r.sigma * lever) / r.k);
 }
 
 // One texel's answer. share: what a smoothie's visibility is multiplied by.
-float pn_texel_sees(int light, highp sampler2DArray maps, highp sampler2DArray smoothies, int map, pn_Receiver r,
+float pn_texel_sees(int light, highp sampler2DArray maps, highp sampler2DArray smoothies, int map, pn_ShadedPoint r,
                     ivec2 texel, vec3 plane, float share) {
   if (pn_map_count(light) > 1) { // a texel counted from one tile of a wide light, which may lie in another
     vec2 st = pn_map_st(light, map, vec2(texel) + 0.5);
     map = pn_map_at(light, st);
     texel = ivec2(floor(pn_map_texel(light, map, st)));
   }
-  if (!pn_map_inside(light, texel)) return 1.0;
+  if (!pn_map_inside(light, map, texel)) return 1.0;
   vec3 q = pn_texel_point(light, maps, map, texel);
   float w = plane.z + dot(plane.xy, q.xy - r.m.xy);
   float sees = min(pn_smoothie(light, smoothies, map, texel, w) * share, 1.0);
   return pn_blocks_apart(light, r, q) ? 0.0 : sees;
 }
 
-float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray smoothies, pn_Receiver r) {
+pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray smoothies, pn_ShadedPoint r) {
   int map = pn_map_at(light, r.m.xy);
   vec2 at = pn_map_texel(light, map, r.m.xy);
-  bool filtered = pn_parameter(light, 3) > 0.5;
+  bool filtered = pn_parameter(light, PN_PARAMETER_FILTER) > 0.5;
   if (filtered) at -= 0.5;
-  ivec2 base = ivec2(floor(at)), size = pn_map_size(light);
+  ivec2 base = ivec2(floor(at)), size = pn_map_size(light, map);
   vec2 f = filtered ? at - vec2(base) : vec2(0.0);
   // What is turned away from the light's centre is out of this shadow, which is the centre's.
   bool asks = r.k < 0.0 && all(greaterThanEqual(base, ivec2(-1))) && all(lessThan(base, size));
   // An edge in the receiver's own plane hides nothing: in the light's plane it is the horizon, which lies -k / |n_uv|
   // from the centre or farther along the edge's normal, where the smoothie ends at the light's half diagonal at most.
-  float above = min(-r.k / max(length(r.n.xy) * length(pn_extent(light)), 1e-30), 1.0);
+  float above = min(-r.k / max(length(r.n.xy) * length(pn_extent(light)), PN_TINY), 1.0);
   // A fixed width under a sun: distances count from the nearest caster's plane.
-  bool scaled = pn_parameter(light, 2) > 0.0 && pn_is_sun(light);
-  float share = (scaled ? max(pn_lights[light].range.x - r.m.z, 0.0) : 1.0) / above;
+  bool scaled = pn_parameter(light, PN_PARAMETER_WIDTH) > 0.0 && pn_is_parallel(light);
+  float share = (scaled ? max(pn_w_near(light) - r.m.z, 0.0) : 1.0) / above;
   vec3 plane = pn_plane(light, r);
   vec2 sum = vec2(0.0); // hidden, seen: one of them is exactly 0 where nothing, or everything, is
   for (int i = 0; i < (asks ? filtered ? 4 : 1 : 0); i++) {

@@ -1,11 +1,11 @@
 // A batch of micropatches, and the sum of those before it (Soft Shadow Maps, appendix A). The sum is in 32 bits,
 // which can be drawn to where they cannot be blended.
 #include "shaders/precision.glsl"
-uniform highp sampler2D pn_work;  // the sum
-uniform highp sampler2D pn_alpha; // the batch
+uniform highp sampler2D pn_sum;  // the sum
+uniform highp sampler2D pn_batch; // the batch
 layout(location = 0) out vec4 pn_out;
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-  pn_out = texelFetch(pn_work, at, 0) + texelFetch(pn_alpha, at, 0);
+  pn_out = texelFetch(pn_sum, at, 0) + texelFetch(pn_batch, at, 0);
 }

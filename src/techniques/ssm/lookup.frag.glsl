@@ -2,12 +2,12 @@
 #include "shaders/precision.glsl"
 #include "search/lookup.glsl"
 #include "receiver/surface.glsl"
-#include "maps/receiver_map.glsl"
-#include "search/horizon.glsl"
+#include "techniques/ssm/seen.glsl"
+#include "gather/horizon.glsl"
 
 uniform highp sampler2DArray pn_maps; // the occluder maps
 uniform highp sampler2DArray pn_seen; // the receiver map
-uniform highp sampler2DArray pn_work; // the soft shadow map: for each side, a layer for each of the receiver map's
+uniform highp sampler2DArray pn_soft; // the soft shadow map: for each side, a layer for each of the receiver map's
 uniform ivec4 pn_layer;               // layers of the receiver map, sides
 layout(location = 0) out vec4 pn_out;
 #define PN_AROUND 8 // texels, even
@@ -16,7 +16,7 @@ layout(location = 0) out vec4 pn_out;
 float pn_hidden_at(ivec2 texel, int layer) {
   float most = 0.0;
   for (int side = 0; side < pn_layer.y; side++)
-    most = max(most, texelFetch(pn_work, ivec3(texel, side * pn_layer.x + layer), 0).r);
+    most = max(most, texelFetch(pn_soft, ivec3(texel, side * pn_layer.x + layer), 0).r);
   return min(most, 1.0);
 }
 
@@ -27,7 +27,7 @@ vec4 pn_layers_at(ivec2 texel, vec3 m, float thickness, float share) {
   vec2 off = m.xy - pn_seen_st(vec2(texel) + 0.5);
   for (int layer = 0; layer < pn_layer.x; layer++) {
     vec4 seen = texelFetch(pn_seen, ivec3(texel, layer), 0);
-    if (seen.x < -1e29) break;
+    if (pn_is_nothing(seen.x)) break;
     float away = (m.z - seen.x - pn_seen_rise(seen.yz, seen.w, off, 4.0 * thickness)) / thickness;
     vec2 term = share / (1.0 + away * away * away * away) * vec2(pn_hidden_at(texel, layer), 1.0);
     sums += vec4(abs(away) < 4.0 ? term : vec2(0.0), term);
@@ -37,7 +37,7 @@ vec4 pn_layers_at(ivec2 texel, vec3 m, float thickness, float share) {
 
 // Bilinear over the four texels around the receiver. Where they hold its surface in no layer, since others lie before it
 // in all of them, those somewhat farther around are asked; then whatever there is, and the hard shadow where it is darker.
-float pn_hidden(pn_Receiver r, bool sun) {
+float pn_hidden(pn_ShadedPoint r, bool sun) {
   vec2 at = pn_seen_texel(r.m.xy) - 0.5;
   ivec2 base = ivec2(floor(at)), last = textureSize(pn_seen, 0).xy - 1;
   vec2 f = at - vec2(base);
@@ -68,10 +68,10 @@ void main() {
   float hidden = 0.0;
   if (pn_receives(pixel)) {
     pn_Surface s = pn_surface(pixel);
-    pn_Receiver r = pn_receiver(0, s.p, s.error, s.n, s.sigma);
+    pn_ShadedPoint r = pn_shaded_point(0, s.p, s.error, s.n, s.sigma);
     if (!pn_unlit(0, r)) {
       float above = pn_area_above(pn_extent(0), r.n.xy, r.k);
-      if (above > 0.0) hidden = min(pn_hidden(r, pn_is_sun(0)) / above, 1.0);
+      if (above > 0.0) hidden = min(pn_hidden(r, pn_is_parallel(0)) / above, 1.0);
     }
   }
 #if PN_BOUND

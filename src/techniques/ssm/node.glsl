@@ -20,10 +20,10 @@ bool pn_node_owned(vec4 texels) {
 
 // The limit of a node that may be a patch at all; nothing lies below the others'.
 float pn_node_limit(ivec2 at, int level, vec4 texels) {
-  if (level >= pn_levels.x || (level > 0 && pn_share.x <= 0.0)) return -1e30;
-  if (any(greaterThan(texels.zw, vec2(pn_map_size(0))))) return -1e30; // partly beside the map
+  if (level >= pn_levels.x || (level > 0 && pn_share.x <= 0.0)) return PN_NOTHING;
+  if (any(greaterThan(texels.zw, vec2(pn_map_size(0, pn_source.w))))) return PN_NOTHING; // partly beside the map
   vec2 range = texelFetch(pn_range, ivec3(at, pn_source.x), level).rg;
-  return pn_patch_full(range) && pn_node_owned(texels) ? pn_patch_limit(range, pn_share.x) : -1e30;
+  return pn_patch_full(range) && pn_node_owned(texels) ? pn_patch_limit(range, pn_share.x) : PN_NOTHING;
 }
 
 vec4 pn_node_texels(ivec2 at, int level) { return vec4(vec2(at), vec2(at) + 1.0) * float(1 << level); }
@@ -37,7 +37,7 @@ pn_Patch pn_node(ivec2 at, int level) {
   p.most = pn_node_limit(at, level, texels);
   p.above = pn_node_limit(at >> 1, level + 1, pn_node_texels(at >> 1, level + 1));
   p.rectangle = vec4(pn_map_st(0, pn_source.w, texels.xy), pn_map_st(0, pn_source.w, texels.zw));
-  p.drawn = p.most > -1e29;
+  p.drawn = !pn_is_nothing(p.most);
   p.least = 0.0;
   return p;
 }
@@ -47,7 +47,7 @@ uint pn_counts(uint count, uint own) { return count | own << 31; }
 uint pn_count(uint counts) { return counts & 0x7fffffffu; }
 uint pn_own(uint counts) { return counts >> 31; }
 
-// w of the farthest receiver in the layer; 1e30 where there is none.
+// w of the farthest receiver in the layer; PN_EVERYTHING where there is none.
 float pn_farthest_seen() { return texelFetch(pn_seen_range, ivec3(0, 0, pn_source.z), pn_levels.y - 1).g; }
 
 // Which receivers it reaches: first out to the farthest there is, then to the farthest one found on the way.

@@ -5,22 +5,22 @@
 #include "techniques/ssm/node.glsl"
 
 #if !PN_FIRST
-uniform highp usampler2D pn_work; // the level below
+uniform highp usampler2D pn_counted; // the level below
 #endif
 layout(location = 0) out uvec4 pn_out;
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   // Nothing is here, and the target says so already; leaving costs less than any condition.
-  if (pn_farthest_seen() > 1e29 || texelFetch(pn_range, ivec3(at, pn_source.x), pn_source.y).r < -1e29) discard;
+  if (pn_farthest_seen() > 0.1 * PN_EVERYTHING || pn_is_nothing(texelFetch(pn_range, ivec3(at, pn_source.x), pn_source.y).r)) discard;
   pn_Patch p = pn_node(at, pn_source.y);
   pn_node_reach(p);
   uint own = p.drawn ? 1u : 0u, count = own;
 #if !PN_FIRST
-  ivec2 last = textureSize(pn_work, 0) - 1;
+  ivec2 last = textureSize(pn_counted, 0) - 1;
   for (int i = 0; i < 4; i++) {
     ivec2 child = 2 * at + ivec2(i & 1, i >> 1);
-    if (all(lessThanEqual(child, last))) count += pn_count(texelFetch(pn_work, child, 0).r);
+    if (all(lessThanEqual(child, last))) count += pn_count(texelFetch(pn_counted, child, 0).r);
   }
 #endif
   pn_out = uvec4(pn_counts(count, own), 0u, 0u, 0u);

@@ -16,7 +16,7 @@ flat in vec2 pn_neighbours;
 // most, where that edge falls onto the light; as a share of the light, over the edge's length.
 float pn_overlap(float w, float neighbour, float w_r, float at, float extent, float edge) {
   float lower = min(w, neighbour) - w_r;
-  if (neighbour < -1e29 || lower <= 0.0) return 0.0;
+  if (pn_is_nothing(neighbour) || lower <= 0.0) return 0.0;
   float nearest = abs(at) / (max(w, neighbour) - w_r); // the farther one projects farther out
   return nearest <= extent ? min(0.5 * abs(w - neighbour) / lower, 1.0) * edge : 0.0;
 }
@@ -34,15 +34,15 @@ void main() {
   float w = pn_served.x, nearer = w - seen.x;
   // In front of the receiver's tangent plane, tested at the patch's middle.
   vec2 middle = 0.5 * (pn_rectangle.xy + pn_rectangle.zw) - st;
-  bool blocks = seen.x > -1e29 && seen.x < w && seen.x <= pn_served.y && seen.x > pn_served.z &&
+  bool blocks = !pn_is_nothing(seen.x) && seen.x < w && seen.x <= pn_served.y && seen.x > pn_served.z &&
                 dot(seen.yz, middle) - seen.w * nearer > 1.0;
-  vec2 scale = 0.5 / (pn_extent(0) * max(nearer, 1e-30));
+  vec2 scale = 0.5 / (pn_extent(0) * max(nearer, PN_TINY));
   vec2 low = clamp((pn_rectangle.xy - st) * scale, -0.5, 0.5), high = clamp((pn_rectangle.zw - st) * scale, -0.5, 0.5);
   vec2 covered = high - low;
 #if PN_SUM == 2
   pn_out = vec4(1.0, 0.0, 0.0, 1.0);
 #elif PN_SUM == 1
-  bool below = seen.x > -1e29 && seen.x < w;
+  bool below = !pn_is_nothing(seen.x) && seen.x < w;
   pn_out = vec4(below ? pn_error_bound(st, seen.x, covered) : 0.0, 0.0, 0.0, 1.0);
 #else
   pn_out = vec4(blocks ? covered.x * covered.y : 0.0, 0.0, 0.0, 1.0);

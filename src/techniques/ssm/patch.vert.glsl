@@ -2,8 +2,8 @@
 #include "shaders/precision.glsl"
 #include "techniques/ssm/patches.glsl"
 
-uniform highp sampler2D pn_work; // the list
-uniform highp sampler2D pn_alpha; // its limits
+uniform highp sampler2D pn_list; // the list
+uniform highp sampler2D pn_limits; // its limits
 #if PN_SUM == 1
 uniform highp sampler2DArray pn_range; // of the occluder maps
 uniform ivec4 pn_layer;
@@ -17,7 +17,7 @@ flat out vec3 pn_served;         // w, serves receivers up to, above
 void main() {
   int k = pn_order.x + pn_order.y * (gl_VertexID / 6), corner = gl_VertexID % 6;
   ivec2 entry = ivec2(k % pn_place.x, k / pn_place.x);
-  vec4 patch_texels = texelFetch(pn_work, entry, 0), limits = texelFetch(pn_alpha, entry, 0);
+  vec4 patch_texels = texelFetch(pn_list, entry, 0), limits = texelFetch(pn_limits, entry, 0);
   vec2 low = pn_map_st(0, pn_place.y, patch_texels.xy);
   vec2 high = pn_map_st(0, pn_place.y, patch_texels.xy + patch_texels.z);
   float w = patch_texels.w;

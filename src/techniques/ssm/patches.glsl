@@ -1,7 +1,7 @@
 // Micropatches: which texels and blocks of texels of an occluder map stand for themselves, and for which receivers.
 // ssm.h has the same functions in C under the same names. docs/techniques/ssm.md derives them.
 #include "maps/maps.glsl"
-#include "maps/receiver_map.glsl"
+#include "techniques/ssm/seen.glsl"
 
 // A block is one micropatch at the middle of its depths where that moves no edge, as the receiver sees it on the
 // light, by more than a share of the light's width. An edge within the light moves by A (hi - lo) / 2 / (lo - w_R) at
@@ -11,7 +11,7 @@ float pn_patch_limit(vec2 range, float share) {
   return depth > 0.0 ? range.y - depth / (4.0 * share) : range.y;
 }
 
-bool pn_patch_full(vec2 range) { return range.y > -1e29; }
+bool pn_patch_full(vec2 range) { return !pn_is_nothing(range.y); }
 
 struct pn_Patch {
   vec4 rectangle; // s0, t0, s1, t1

@@ -2,84 +2,56 @@
  * the soft shadow map. */
 #include <math.h>
 
+#include "gl/host.h"
 #include "techniques/ssm/ssm.h"
-
-static pn_result patch_program(pni_gpu *gpu, ssm_sum_kind kind, const pni_program **out) {
-  static const char *const defines[] = {"PN_SUM 0\n", "PN_SUM 1\n", "PN_SUM 2\n"};
-  pni_program_key key = {"techniques/ssm/patch.vert.glsl", "techniques/ssm/patch.frag.glsl", NULL, defines[kind]};
-  return pni_program_get(gpu, &key, out);
-}
-
-static pn_result add_program(pni_gpu *gpu, const pni_program **out) {
-  pni_program_key key = {"shaders/screen.vert.glsl", "techniques/ssm/add.frag.glsl", NULL, ""};
-  return pni_program_get(gpu, &key, out);
-}
-
-pn_result ssm_scatter_prepare(pni_gpu *gpu) {
-  const pni_program *program;
-  pn_result result = patch_program(gpu, SSM_SUM_SHADOW, &program);
-  return result == PN_OK ? add_program(gpu, &program) : result;
-}
 
 /* ---- drawing ----------------------------------------------------------------------------------------------------- */
 
-static pn_result begin_target(const ssm_scattering *s, pni_attachment target, pni_blend blend, bool clear) {
-  pni_pass pass = {.color = {target}, .width = s->soft->width, .height = s->soft->height, .blend = blend};
-  pn_result result = pni_pass_begin(s->r->gpu, &pass);
-  static const GLfloat zero[4] = {0, 0, 0, 0};
-  if (result == PN_OK && clear) GL(s->r->gpu, ClearBufferfv)(GL_COLOR, 0, zero);
-  return result;
+static const float zero[4] = {0, 0, 0, 0};
+
+static pni_pass sum_pass(const pni_ssm_scattering *s, const char *name, pni_image target) {
+  return (pni_pass){.name = name, .color = {target}, .width = s->soft->width, .height = s->soft->height};
 }
 
-/* Everything set for drawing entries of the list that lies in the work textures. */
-static pn_result begin_patches(const ssm_scattering *s, const ssm_list *list, pni_attachment target, bool clear,
-                               int first, int step) {
-  pni_gpu *gpu = s->r->gpu;
-  const pni_texture *work = s->r->pair->work;
-  const pni_program *program;
-  pn_result result = patch_program(gpu, s->kind, &program);
-  if (result == PN_OK) result = begin_target(s, target, PNI_BLEND_ADD, clear);
-  if (result != PN_OK) return result;
-  GL(gpu, UseProgram)(program->id);
-  GLint order[4] = {first, step, 0, 0};
-  GLint place[4] = {work[SSM_LIST].width, list->map, s->soft->width, s->soft->height};
-  GLint layer[4] = {list->seen_layer, list->map * s->r->maps->layers + list->layer, 0, 0};
-  GL(gpu, Uniform4iv)(pni_uniform(program, "pn_order"), 1, order);
-  GL(gpu, Uniform4iv)(pni_uniform(program, "pn_place"), 1, place);
-  GL(gpu, Uniform4iv)(pni_uniform(program, "pn_layer"), 1, layer);
-  pni_receiver_map_bind(gpu, &s->r->pair->seen, program);
-  pni_bind_texture(gpu, PNI_UNIT_RANGE, s->r->maps->range.target, s->r->maps->range.id, true);
-  pni_bind_texture(gpu, PNI_UNIT_WORK, work[SSM_LIST].target, work[SSM_LIST].id, false);
-  pni_bind_texture(gpu, PNI_UNIT_ALPHA, work[SSM_LIMITS].target, work[SSM_LIMITS].id, false);
-  return PN_OK;
+static pni_image soft_layer(const pni_ssm_scattering *s) { return pni_image_of(s->soft, 0, s->target); }
+
+static pn_result clear_sum(const pni_ssm_scattering *s, pni_image target) {
+  pni_pass pass = sum_pass(s, "soft shadow map, cleared", target);
+  pass.clear = zero;
+  return pni_pass_begin(s->job->gpu, &pass);
 }
 
-/* Entries first, first + step, ... of the list. */
-typedef struct {
-  int first, step, count;
-} entry_range;
-
-static pn_result draw_entries(const ssm_scattering *s, const ssm_list *list, pni_attachment target, bool clear,
-                              entry_range range) {
-  pn_result result = begin_patches(s, list, target, clear, range.first, range.step);
+/* Everything set for drawing entries first, first + step, ... of the list that lies in the textures. */
+static pn_result begin_patches(const pni_ssm_scattering *s, const pni_ssm_list *list, pni_pass *pass, int first,
+                               int step) {
+  static const char *const defines[] = {"PN_SUM 0\n", "PN_SUM 1\n", "PN_SUM 2\n"};
+  pni_gpu *gpu = s->job->gpu;
+  const pni_ssm_state *state = s->state;
+  pass->program =
+      (pni_program_key){"techniques/ssm/patch.vert.glsl", "techniques/ssm/patch.frag.glsl", NULL, defines[s->kind]};
+  pass->blend = PNI_BLEND_ADD;
+  pn_result result = pni_pass_begin(gpu, pass);
   if (result != PN_OK) return result;
-  GL(s->r->gpu, BindVertexArray)(s->r->gpu->vertex_array);
-  GL(s->r->gpu, DrawArrays)(GL_TRIANGLES, 0, 6 * range.count);
+  int layer = list->map * pni_want_layers(&s->job->maps->want) + list->layer;
+  pni_set_ints(gpu, "pn_order", first, step, 0, 0);
+  pni_set_ints(gpu, "pn_place", state->list.width, list->map, s->soft->width, s->soft->height);
+  pni_set_ints(gpu, "pn_layer", list->seen_layer, layer, 0, 0);
+  pni_seen_set(gpu, &state->seen);
+  pni_set_texture(gpu, "pn_range", &s->job->maps->range);
+  pni_set_texture(gpu, "pn_list", &state->list);
+  pni_set_texture(gpu, "pn_limits", &state->limits);
   return PN_OK;
 }
 
 /* The batch and the sum so far, into the other of two images: nothing is blended. */
-static pn_result add_batch(ssm_scattering *s) {
-  pni_gpu *gpu = s->r->gpu;
-  const pni_texture *work = s->r->pair->work, *batch = &work[SSM_BATCH];
-  const pni_texture *from = &work[SSM_SUM + s->sum], *to = &work[SSM_SUM + !s->sum];
-  const pni_program *program;
-  pn_result result = add_program(gpu, &program);
-  if (result == PN_OK) result = begin_target(s, (pni_attachment){to->id, to->target, 0, 0}, PNI_BLEND_NONE, false);
+static pn_result add_batch(pni_ssm_scattering *s) {
+  pni_gpu *gpu = s->job->gpu;
+  pni_pass pass = sum_pass(s, "sum of batches", pni_image_of(&s->state->sums[!s->sum], 0, 0));
+  pass.program.fragment = "techniques/ssm/add.frag.glsl";
+  pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
-  GL(gpu, UseProgram)(program->id);
-  pni_bind_texture(gpu, PNI_UNIT_WORK, from->target, from->id, false);
-  pni_bind_texture(gpu, PNI_UNIT_ALPHA, batch->target, batch->id, false);
+  pni_set_texture(gpu, "pn_sum", &s->state->sums[s->sum]);
+  pni_set_texture(gpu, "pn_batch", &s->state->batch);
   pni_draw_screen(gpu);
   s->sum = !s->sum;
   return PN_OK;
@@ -87,87 +59,84 @@ static pn_result add_batch(ssm_scattering *s) {
 
 /* Appendix A's way round 16 bits: about sqrt(M) micropatches are summed up aside before they meet the rest. Neighbours
  * in the list cover the same texels, so a batch takes every sqrt(M)-th: what meets in a texel of it is few. */
-static pn_result draw_batches(ssm_scattering *s, const ssm_list *list, int total, int count) {
-  const pni_texture *batch = &s->r->pair->work[SSM_BATCH];
-  pni_attachment aside = {batch->id, batch->target, 0, 0};
+static pn_result draw_batches(pni_ssm_scattering *s, const pni_ssm_list *list, int total, int count) {
   int step = (int)ceil(sqrt(total));
   pn_result result = PN_OK;
   for (int first = 0; first < step && first < count && result == PN_OK; first++) {
-    entry_range range = {first, step, (count - first + step - 1) / step};
-    result = draw_entries(s, list, aside, true, range);
-    if (result == PN_OK) result = add_batch(s);
+    pni_pass pass = sum_pass(s, "batch of micropatches", pni_image_of(&s->state->batch, 0, 0));
+    pass.clear = zero;
+    result = begin_patches(s, list, &pass, first, step);
+    if (result != PN_OK) return result;
+    pni_draw_triangles(s->job->gpu, 6 * ((count - first + step - 1) / step));
+    result = add_batch(s);
   }
   return result;
 }
 
 /* What lies in the list's textures: total micropatches in all lists, or -1 where only the GPU knows. */
-static pn_result draw_list(ssm_scattering *s, const ssm_list *list, int total) {
-  const pni_visibility_request *r = s->r;
-  int size = ssm_list_size(r->maps), left = total - list->first;
-  if (total >= 0 && s->by_batches) return draw_batches(s, list, total, left < size ? left : size);
-  if (total >= 0) return draw_entries(s, list, s->target, false, (entry_range){0, 1, left < size ? left : size});
-  pn_result result = begin_patches(s, list, s->target, false, 0, 1);
-  if (result == PN_OK) pni_draw_counted(r->gpu, &r->pair->arguments, SSM_DRAW_PATCHES, 6 * size);
-  return result;
+static pn_result draw_list(pni_ssm_scattering *s, const pni_ssm_list *list, int total) {
+  pni_gpu *gpu = s->job->gpu;
+  int size = pni_ssm_list_size(s->job->maps), left = total - list->first, count = left < size ? left : size;
+  if (total >= 0 && s->by_batches) return draw_batches(s, list, total, count);
+  pni_pass pass = sum_pass(s, "micropatches summed", soft_layer(s));
+  pn_result result = begin_patches(s, list, &pass, 0, 1);
+  if (result != PN_OK) return result;
+  if (total >= 0) pni_draw_triangles(gpu, 6 * count);
+  else pni_draw_counted(gpu, &s->state->arguments, PNI_SSM_DRAW_PATCHES, 6 * size);
+  return PN_OK;
 }
 
-void ssm_mark(const ssm_scattering *s, const char *stage) {
-  pni_clock_mark(s->r->gpu, &s->r->pair->clock, s->kind ? "debug" : stage);
-}
+void pni_ssm_mark(const pni_ssm_scattering *s, const char *stage) { pni_job_mark(s->job, s->kind ? "debug" : stage); }
 
-static pn_result scatter_gpu(ssm_scattering *s, ssm_list *list) {
-  int total = -1, most = ssm_list_most(s->r->maps);
-  pn_result result = ssm_gpu_count(list);
-  if (result == PN_OK && s->by_batches) result = ssm_gpu_total(list, &total);
+static pn_result scatter_gpu(pni_ssm_scattering *s, pni_ssm_list *list) {
+  const pni_maps *maps = s->job->maps;
+  int total = -1, most = pni_ssm_list_most(maps);
+  pn_result result = pni_ssm_gpu_count(list);
+  if (result == PN_OK && s->by_batches) total = pni_ssm_gpu_total(list);
   if (total >= 0) most = total;
-  for (; list->first < most && result == PN_OK; list->first += ssm_list_size(s->r->maps)) {
-    result = ssm_gpu_list(list);
-    ssm_mark(s, "extents");
+  for (; list->first < most && result == PN_OK; list->first += pni_ssm_list_size(maps)) {
+    result = pni_ssm_gpu_list(list);
+    pni_ssm_mark(s, "extents");
     if (result == PN_OK) result = draw_list(s, list, total);
-    ssm_mark(s, "accumulate");
+    pni_ssm_mark(s, "accumulate");
   }
   return result;
 }
 
-static pn_result scatter_cpu(ssm_scattering *s, ssm_list *list) {
+static pn_result scatter_cpu(pni_ssm_scattering *s, pni_ssm_list *list) {
   float *entries;
   int total;
-  pn_result result = ssm_cpu_list(list, &entries, &total);
-  for (; list->first < total && result == PN_OK; list->first += ssm_list_size(s->r->maps)) {
-    result = ssm_cpu_upload(list, entries, total);
-    ssm_mark(s, "extents");
+  pn_result result = pni_ssm_cpu_list(list, &entries, &total);
+  for (; list->first < total && result == PN_OK; list->first += pni_ssm_list_size(s->job->maps)) {
+    result = pni_ssm_cpu_upload(list, entries, total);
+    pni_ssm_mark(s, "extents");
     if (result == PN_OK) result = draw_list(s, list, total);
-    ssm_mark(s, "accumulate");
+    pni_ssm_mark(s, "accumulate");
   }
-  pni_free(s->r->gpu, entries);
+  pni_free(s->job->gpu, entries);
   return result;
-}
-
-static pn_result begin_sum(ssm_scattering *s) {
-  const pni_texture *sum = &s->r->pair->work[SSM_SUM];
-  s->sum = 0;
-  pni_attachment target = s->by_batches ? (pni_attachment){sum->id, sum->target, 0, 0} : s->target;
-  return begin_target(s, target, PNI_BLEND_NONE, true);
 }
 
 /* One side's shadow on one layer of receivers. */
-static pn_result scatter(ssm_scattering *s, int side, int seen_layer) {
-  const pni_maps *maps = s->r->maps;
-  s->target = (pni_attachment){s->soft->id, s->soft->target, 0, side * s->r->pair->seen.want.layers + seen_layer};
-  pn_result result = begin_sum(s);
-  for (int map = 0; map < maps->fit.tiles && result == PN_OK; map++) {
-    ssm_list list = {.request = s->r, .map = map, .layer = side, .seen_layer = seen_layer, .share = s->share};
+static pn_result scatter(pni_ssm_scattering *s, int side, int seen_layer) {
+  const pni_maps *maps = s->job->maps;
+  s->target = side * s->state->seen.want.layers + seen_layer;
+  s->sum = 0;
+  pn_result result = clear_sum(s, s->by_batches ? pni_image_of(&s->state->sums[0], 0, 0) : soft_layer(s));
+  for (int map = 0; map < (int)maps->block.map_count && result == PN_OK; map++) {
+    pni_ssm_list list = {
+        .job = s->job, .state = s->state, .map = map, .layer = side, .seen_layer = seen_layer, .share = s->share};
     result = s->on_cpu ? scatter_cpu(s, &list) : scatter_gpu(s, &list);
   }
-  if (result == PN_OK && s->by_batches)
-    pni_copy_to_layer(s->r->gpu, &s->r->pair->work[SSM_SUM + s->sum], s->soft, s->target.layer);
+  if (result == PN_OK && s->by_batches) pni_copy_to_layer(s->job->gpu, &s->state->sums[s->sum], s->soft, s->target);
   return result;
 }
 
-pn_result ssm_scatter(ssm_scattering *s) {
+pn_result pni_ssm_scatter(pni_ssm_scattering *s) {
+  int sides = pni_want_layers(&s->job->maps->want);
   pn_result result = PN_OK;
-  for (int side = 0; side < s->r->maps->layers; side++)
-    for (int layer = 0; layer < s->r->pair->seen.want.layers && result == PN_OK; layer++)
+  for (int side = 0; side < sides; side++)
+    for (int layer = 0; layer < s->state->seen.want.layers && result == PN_OK; layer++)
       result = scatter(s, side, layer);
   return result;
 }

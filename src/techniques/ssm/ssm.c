@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "gl/host.h"
+
 enum { PRESET, SIDES, ACCUMULATE, EXTENTS, MERGE, SIZE, LAYERS, COUNT };
 enum { SIDES_BOTH, SIDES_FRONT, SIDES_BACK };
 enum { ACCUMULATE_FP32, ACCUMULATE_BATCHED, ACCUMULATE_FP16 };
@@ -57,30 +59,38 @@ static void want(const double *values, pni_maps_want *out) {
       .near_layers = has_front(values), .farthest = has_back(values), .range = {.structure = PNI_RANGE_PYRAMID}};
 }
 
-/* ---- programs ---------------------------------------------------------------------------------------------------- */
+/* ---- what it keeps for a pair ------------------------------------------------------------------------------------ */
 
-static pn_result lookup_program(pni_gpu *gpu, const char *receiver_defines, bool bound, const pni_program **out) {
-  char defines[PNI_RECEIVER_DEFINES + 16];
-  snprintf(defines, sizeof defines, "%sPN_BOUND %d\n", receiver_defines, bound);
-  pni_program_key key = {"shaders/screen.vert.glsl", "techniques/ssm/lookup.frag.glsl", NULL, defines};
-  return pni_program_get(gpu, &key, out);
+static void release(pni_gpu *gpu, void *data, bool abandon) {
+  pni_ssm_state *s = data;
+  pni_texture *all[] = {&s->counts,  &s->list, &s->limits,  &s->totals, &s->batch, &s->sums[0],
+                        &s->sums[1], &s->soft, &s->covered, &s->bounds, &s->bound};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) pni_texture_free(gpu, all[i], abandon);
+  pni_seen_free(gpu, &s->seen, abandon);
+  pni_buffer_free(gpu, &s->arguments, abandon);
 }
 
-static pn_result prepare(pni_gpu *gpu, const double *values) {
-  static const char *const receivers[] = {"PN_NORMALS 0\nPN_MASK 0\n", "PN_NORMALS 1\nPN_MASK 0\n"};
-  const pni_program *program;
-  pn_result result = ssm_gpu_prepare(gpu);
-  if (result == PN_OK) result = ssm_scatter_prepare(gpu);
-  for (int i = 0; i < 2 && result == PN_OK; i++) result = lookup_program(gpu, receivers[i], false, &program);
-  return result == PN_OK ? pni_receiver_map_prepare(gpu, (int)values[LAYERS]) : result;
+static const pni_texture *image(const void *data, int index, const char **name) {
+  static const char *const names[] = {"receivers", "covered", "bound"};
+  const pni_ssm_state *s = data;
+  const pni_texture *all[] = {&s->seen.layers, &s->covered, &s->bound};
+  if (index >= (int)(sizeof all / sizeof *all)) return NULL;
+  *name = names[index];
+  return all[index];
+}
+
+static bool soft_shadow_map(const void *data, pn_soft_shadow_map *out) {
+  const pni_ssm_state *s = data;
+  *out = s->shown;
+  return s->shown.image.texture != 0;
 }
 
 /* ---- where the soft shadow map lies ------------------------------------------------------------------------------ */
 
 /* Casters grown by the penumbra, as far as receivers are seen there. False: nothing to shadow. */
-static bool place_axis(const pni_visibility_request *r, const pni_region *seen, int i, double *low, double *high) {
-  const pni_fit_result *fit = &r->maps->fit;
-  double reach = pni_penumbra_extent(r->frame->extent[i], fit->w_near, seen->least[2]);
+static bool place_axis(const pni_job *job, const pni_region *seen, int i, double *low, double *high) {
+  const pni_fit_result *fit = &job->maps->fit;
+  double reach = pni_penumbra_extent(job->emission->extent[i], fit->w_near, seen->least[2]);
   *low = fmax(fit->bounds[i] - reach, seen->least[i]);
   *high = fmin(fit->bounds[i + 2] + reach, seen->most[i]);
   if (!(*low <= *high)) return false;
@@ -93,22 +103,22 @@ static bool place_axis(const pni_visibility_request *r, const pni_region *seen, 
   return true;
 }
 
-static pn_result find_receivers(const pni_visibility_request *r, pni_region *seen) {
-  if (r->visible) {
-    *seen = *r->visible;
+static pn_result find_receivers(const pni_job *job, pni_region *seen) {
+  if (job->visible) {
+    *seen = *job->visible;
     return PN_OK;
   }
   *seen = pni_region_empty();
-  return pni_receiver_bounds(r->receiver, r->frame, seen);
+  return pni_receiver_bounds(job->receiver, job->frame, seen);
 }
 
-static bool place(const pni_visibility_request *r, const pni_region *seen, pni_receiver_map_want *out) {
-  int size = (int)r->values[SIZE];
-  *out = (pni_receiver_map_want){.width = size ? size : r->desc->map_width,
-                                 .height = size ? size : r->desc->map_height,
-                                 .layers = (int)r->values[LAYERS]};
+static bool place(const pni_job *job, const pni_region *seen, pni_seen_want *out) {
+  int size = (int)job->values[SIZE];
+  *out = (pni_seen_want){.width = size ? size : job->desc->map_width,
+                         .height = size ? size : job->desc->map_height,
+                         .layers = (int)job->values[LAYERS]};
   for (int i = 0; i < 2; i++)
-    if (!place_axis(r, seen, i, &out->bounds[i], &out->bounds[i + 2])) return false;
+    if (!place_axis(job, seen, i, &out->bounds[i], &out->bounds[i + 2])) return false;
   /* Receivers in a plane that faces the light have no extent in w; the depth test needs one that floats resolve. */
   double span = fmax(seen->most[2] - seen->least[2], 1e-3 * fabs(seen->most[2]) + 1e-12);
   out->w_least = seen->least[2] - 0.1 * span;
@@ -118,23 +128,24 @@ static bool place(const pni_visibility_request *r, const pni_region *seen, pni_r
 
 /* ---- the lookup -------------------------------------------------------------------------------------------------- */
 
-static pn_result look_up(const ssm_scattering *s, pni_attachment target) {
-  const pni_visibility_request *r = s->r;
-  char defines[PNI_RECEIVER_DEFINES];
-  const pni_program *program;
-  pni_receiver_defines(r->receiver, defines);
-  pn_result result = lookup_program(r->gpu, defines, s->kind == SSM_SUM_BOUND, &program);
+static pn_result look_up(const pni_ssm_scattering *s, pni_target target) {
+  const pni_job *job = s->job;
+  pni_gpu *gpu = job->gpu;
+  char receiver[PNI_RECEIVER_DEFINES], defines[PNI_RECEIVER_DEFINES + 16];
+  pni_receiver_defines(job->receiver, receiver);
+  snprintf(defines, sizeof defines, "%sPN_BOUND %d\n", receiver, s->kind == PNI_SSM_SUM_BOUND);
+  pni_pass pass =
+      pni_job_pass(job, "ssm", (pni_program_key){.fragment = "techniques/ssm/lookup.frag.glsl", .defines = defines});
+  pass.color[0] = target.image;
+  pass.channels = target.channels;
+  pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
-  pni_pass pass = {.color = {target}, .width = r->receiver->desc.width, .height = r->receiver->desc.height};
-  result = pni_screen_begin(r->gpu, &pass, program);
-  if (result != PN_OK) return result;
-  GLint layers[4] = {r->pair->seen.want.layers, r->maps->layers, 0, 0};
-  pni_receiver_bind(r->receiver, program, r->frame, 1);
-  pni_receiver_map_bind(r->gpu, &r->pair->seen, program);
-  GL(r->gpu, Uniform4iv)(pni_uniform(program, "pn_layer"), 1, layers);
-  pni_bind_texture(r->gpu, PNI_UNIT_WORK, s->soft->target, s->soft->id, false);
-  pni_bind_texture(r->gpu, PNI_UNIT_MAPS, r->maps->depth.target, r->maps->depth.id, false);
-  pni_draw_screen(r->gpu);
+  pni_receiver_uniforms(job->receiver, job->frame, 1);
+  pni_seen_set(gpu, &s->state->seen);
+  pni_set_ints(gpu, "pn_layer", s->state->seen.want.layers, pni_want_layers(&job->maps->want), 0, 0);
+  pni_set_texture(gpu, "pn_soft", s->soft);
+  pni_set_texture(gpu, "pn_maps", &job->maps->depth);
+  pni_draw_screen(gpu);
   return PN_OK;
 }
 
@@ -142,105 +153,127 @@ static pn_result look_up(const ssm_scattering *s, pni_attachment target) {
 
 /* Appendix A, Eq. 4: beside a sum near 1, 16 bits keep nothing below 2^-10, and the smallest thing a micropatch hides
  * is its area on the light as the farthest receiver sees it. */
-static void warn_of_loss(const pni_visibility_request *r, const pni_region *seen) {
-  const pni_fit_result *fit = &r->maps->fit;
-  const double *tile = fit->tile[0], *extent = r->frame->extent;
+static void warn_of_loss(const pni_job *job, const pni_region *seen) {
+  pni_ssm_state *state = job->pair_state;
+  const pni_fit_result *fit = &job->maps->fit;
+  const double *tile = fit->tile[0], *extent = job->emission->extent;
   double depth = fit->w_near - seen->least[2];
-  double share = (tile[2] - tile[0]) / r->desc->map_width * (tile[3] - tile[1]) / r->desc->map_height /
+  double share = (tile[2] - tile[0]) / job->desc->map_width * (tile[3] - tile[1]) / job->desc->map_height /
                  (4 * extent[0] * extent[1] * depth * depth);
   bool loses = share < 0x1p-10;
-  if (loses && !r->pair->warned)
-    pni_note(r->gpu, PN_LOG_WARNING, PN_MESSAGE_ACCUMULATION,
+  if (loses && !state->warned)
+    pni_note(job->gpu, PN_LOG_WARNING, PN_MESSAGE_ACCUMULATION,
              "micropatches may hide as little as %.2g of the light: sums in 16 bits lose what is below 2^-10 of them",
              share);
-  r->pair->warned = loses;
+  state->warned = loses;
 }
 
-static int accumulation(const pni_visibility_request *r) {
-  if (r->values[ACCUMULATE] != ACCUMULATE_FP32 || r->gpu->can.float_blend) return (int)r->values[ACCUMULATE];
-  if (!r->pair->warned)
-    pni_note(r->gpu, PN_LOG_INFO, PN_MESSAGE_FALLBACK,
+static int accumulation(const pni_job *job) {
+  pni_ssm_state *state = job->pair_state;
+  if (job->values[ACCUMULATE] != ACCUMULATE_FP32 || job->gpu->can.float_blend) return (int)job->values[ACCUMULATE];
+  if (!state->warned)
+    pni_note(job->gpu, PN_LOG_INFO, PN_MESSAGE_FALLBACK,
              "this device does not blend 32-bit floats: soft shadow maps are summed up in 16 bits, by batches");
-  r->pair->warned = true;
+  state->warned = true;
   return ACCUMULATE_BATCHED;
-}
-
-/* ---- what it leaves for the host --------------------------------------------------------------------------------- */
-
-static void hand_out(const ssm_scattering *s) {
-  pni_pair *pair = s->r->pair;
-  const pni_receiver_map_want *w = &pair->seen.want;
-  pair->soft = (pn_soft_shadow_map){.sides = s->r->maps->layers,
-                                    .layers = w->layers,
-                                    .s0 = (float)w->bounds[0],
-                                    .t0 = (float)w->bounds[1],
-                                    .s1 = (float)w->bounds[2],
-                                    .t1 = (float)w->bounds[3]};
-  pni_texture_image(s->soft, &pair->soft.image);
-}
-
-static ssm_scattering start(const pni_visibility_request *r, ssm_sum_kind kind, const pni_texture *soft) {
-  return (ssm_scattering){
-      .r = r, .kind = kind, .soft = soft, .on_cpu = r->values[EXTENTS] == EXTENTS_CPU, .share = r->values[MERGE] / 100};
-}
-
-/* Eq. 3 instead of the shadow: how far the sums may be off because neighbouring micropatches overlap or part. */
-static pn_result draw_bound(const pni_visibility_request *r) {
-  pni_texture *soft = &r->pair->work[SSM_BOUND], *image = &r->pair->bound;
-  const pni_receiver_map_want *w = &r->pair->seen.want;
-  const pn_receiver_desc *view = &r->receiver->desc;
-  ssm_scattering s = start(r, SSM_SUM_BOUND, soft);
-  pn_result result = pni_texture_shape(r->gpu, soft, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
-  if (result == PN_OK) result = pni_texture_shape(r->gpu, image, GL_R32F, view->width, view->height, 0, 1);
-  if (result == PN_OK) result = ssm_scatter(&s);
-  if (result == PN_OK) result = look_up(&s, (pni_attachment){image->id, image->target, 0, 0});
-  ssm_mark(&s, "debug");
-  return result;
-}
-
-/* How many micropatches each texel was asked about. */
-static pn_result draw_counts(const pni_visibility_request *r) {
-  pni_texture *covered = &r->pair->covered;
-  const pni_receiver_map_want *w = &r->pair->seen.want;
-  ssm_scattering s = start(r, SSM_SUM_COUNT, covered);
-  pn_result result = pni_texture_shape(r->gpu, covered, GL_R32F, w->width, w->height, r->maps->layers * w->layers, 1);
-  if (result == PN_OK) result = ssm_scatter(&s);
-  return result;
 }
 
 /* ---- all of it --------------------------------------------------------------------------------------------------- */
 
-static pn_result shape(const pni_visibility_request *r, const pni_receiver_map_want *w, int accumulate) {
-  pni_texture *work = r->pair->work;
-  GLenum format = accumulate == ACCUMULATE_FP16 ? GL_R16F : GL_R32F;
-  pn_result result =
-      pni_texture_shape(r->gpu, &work[SSM_SOFT], format, w->width, w->height, r->maps->layers * w->layers, 1);
-  for (int i = SSM_BATCH; i < SSM_SOFT && result == PN_OK && accumulate == ACCUMULATE_BATCHED; i++)
-    result = pni_texture_shape(r->gpu, &work[i], i == SSM_BATCH ? GL_R16F : GL_R32F, w->width, w->height, 0, 1);
-  return result == PN_OK ? ssm_gpu_shape(r) : result;
+static void hand_out(pni_ssm_state *state, const pni_job *job) {
+  const pni_seen_want *w = &state->seen.want;
+  state->shown = (pn_soft_shadow_map){.sides = pni_want_layers(&job->maps->want),
+                                      .layers = w->layers,
+                                      .s0 = (float)w->bounds[0],
+                                      .t0 = (float)w->bounds[1],
+                                      .s1 = (float)w->bounds[2],
+                                      .t1 = (float)w->bounds[3]};
+  pni_texture_describe(&state->soft, &state->shown.image);
 }
 
-static pn_result draw(const pni_visibility_request *r) {
-  pni_region seen;
-  pni_receiver_map_want where;
-  pn_result result = find_receivers(r, &seen);
-  if (result != PN_OK) return result;
-  const pn_receiver_desc *view = &r->receiver->desc;
-  if (!place(r, &seen, &where)) return pni_fill(r->gpu, r->target, view->width, view->height, 1);
-  int accumulate = accumulation(r);
-  ssm_scattering s = start(r, SSM_SUM_SHADOW, &r->pair->work[SSM_SOFT]);
+static pni_ssm_scattering start(const pni_job *job, pni_ssm_sum_kind kind, const pni_texture *soft) {
+  return (pni_ssm_scattering){.job = job,
+                              .state = job->pair_state,
+                              .kind = kind,
+                              .soft = soft,
+                              .on_cpu = job->values[EXTENTS] == EXTENTS_CPU,
+                              .share = job->values[MERGE] / 100};
+}
+
+/* An image like the soft shadow map. */
+static pn_result shape_soft(const pni_job *job, pni_texture *image, const char *label, pni_format format) {
+  const pni_ssm_state *state = job->pair_state;
+  const pni_seen_want *w = &state->seen.want;
+  int layers = pni_want_layers(&job->maps->want) * w->layers;
+  return pni_texture_shape(job->gpu, image, label, format, w->width, w->height, layers, 1);
+}
+
+/* Eq. 3 instead of the shadow: how far the sums may be off because neighbouring micropatches overlap or part. */
+static pn_result draw_bound(const pni_job *job) {
+  pni_ssm_state *state = job->pair_state;
+  const pn_receiver_desc *view = &job->receiver->desc;
+  pni_ssm_scattering s = start(job, PNI_SSM_SUM_BOUND, &state->bounds);
+  pn_result result = shape_soft(job, &state->bounds, "bounds of the error", PNI_R32F);
+  if (result == PN_OK)
+    result = pni_texture_shape(job->gpu, &state->bound, "bound", PNI_R32F, view->width, view->height, 0, 1);
+  if (result == PN_OK) result = pni_ssm_scatter(&s);
+  if (result == PN_OK) result = look_up(&s, (pni_target){pni_image_of(&state->bound, 0, 0), 0});
+  pni_ssm_mark(&s, "debug");
+  return result;
+}
+
+/* How many micropatches each texel was asked about. */
+static pn_result draw_counts(const pni_job *job) {
+  pni_ssm_state *state = job->pair_state;
+  pni_ssm_scattering s = start(job, PNI_SSM_SUM_COUNT, &state->covered);
+  pn_result result = shape_soft(job, &state->covered, "covered", PNI_R32F);
+  return result == PN_OK ? pni_ssm_scatter(&s) : result;
+}
+
+static pn_result shape(const pni_job *job, int accumulate) {
+  pni_ssm_state *state = job->pair_state;
+  const pni_seen_want *w = &state->seen.want;
+  pni_format format = accumulate == ACCUMULATE_FP16 ? PNI_R16F : PNI_R32F;
+  pn_result result = shape_soft(job, &state->soft, "soft shadow map", format);
+  if (result == PN_OK && accumulate == ACCUMULATE_BATCHED) {
+    result = pni_texture_shape(job->gpu, &state->batch, "batch", PNI_R16F, w->width, w->height, 0, 1);
+    for (int i = 0; i < 2 && result == PN_OK; i++)
+      result = pni_texture_shape(job->gpu, &state->sums[i], "sum of batches", PNI_R32F, w->width, w->height, 0, 1);
+  }
+  return result == PN_OK ? pni_ssm_gpu_shape(job) : result;
+}
+
+static pn_result draw_shadow(const pni_job *job, const pni_region *seen, const pni_seen_want *where) {
+  pni_ssm_state *state = job->pair_state;
+  int accumulate = accumulation(job);
+  pni_ssm_scattering s = start(job, PNI_SSM_SUM_SHADOW, &state->soft);
   s.by_batches = accumulate == ACCUMULATE_BATCHED;
-  if (r->values[ACCUMULATE] == ACCUMULATE_FP16) warn_of_loss(r, &seen);
-  result = shape(r, &where, accumulate);
-  if (result == PN_OK) result = pni_receiver_map_draw(r->receiver, r->frame, &where, &r->pair->seen);
-  ssm_mark(&s, "receiver_map");
-  if (result == PN_OK) result = ssm_scatter(&s);
-  if (result == PN_OK) result = look_up(&s, r->target);
-  ssm_mark(&s, "visibility");
-  if (result == PN_OK) hand_out(&s);
-  if (result == PN_OK && r->gpu->debug & PN_DEBUG_SEARCH) result = draw_counts(r);
-  bool bound = r->gpu->debug & PN_DEBUG_BOUND && r->values[MERGE] == 0; /* Eq. 3 speaks of single texels */
-  if (result == PN_OK && bound) result = draw_bound(r);
+  if (job->values[ACCUMULATE] == ACCUMULATE_FP16) warn_of_loss(job, seen);
+  pn_result result = pni_seen_draw(job, where, &state->seen);
+  if (result == PN_OK) result = shape(job, accumulate);
+  pni_ssm_mark(&s, "receiver_map");
+  if (result == PN_OK) result = pni_ssm_scatter(&s);
+  if (result == PN_OK) result = look_up(&s, job->target);
+  pni_ssm_mark(&s, "visibility");
+  if (result == PN_OK) hand_out(state, job);
+  return result;
+}
+
+static pn_result draw(const pni_job *job) {
+  pni_ssm_state *state = job->pair_state;
+  pni_region seen;
+  pni_seen_want where;
+  state->shown = (pn_soft_shadow_map){0};
+  pn_result result = find_receivers(job, &seen);
+  if (result != PN_OK) return result;
+  if (!place(job, &seen, &where)) {
+    pni_pass pass = pni_job_pass(job, NULL, (pni_program_key){0});
+    return pni_fill(job->gpu, "nothing to shadow", &pass, 1);
+  }
+  result = draw_shadow(job, &seen, &where);
+  if (result == PN_OK && job->gpu->debug & PN_DEBUG_SEARCH) result = draw_counts(job);
+  bool bound = job->gpu->debug & PN_DEBUG_BOUND && job->values[MERGE] == 0; /* Eq. 3 speaks of single texels */
+  if (result == PN_OK && bound) result = draw_bound(job);
   return result;
 }
 
@@ -254,5 +287,6 @@ const pni_technique_class pni_technique_ssm = {
     .want = want,
     .preset = preset,
     .draw = draw,
-    .prepare = prepare,
+    .pair_kind = {.bytes = sizeof(pni_ssm_state), .release = release, .image = image},
+    .soft_shadow_map = soft_shadow_map,
 };

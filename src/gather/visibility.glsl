@@ -1,0 +1,42 @@
+// The frame around every gathering technique: pixel to shaded point, the cases that need no map, then the technique's
+//   pn_Visibility pn_technique(int light, sampler2DArray maps, sampler2DArray range, pn_ShadedPoint r)
+// which follows this file.
+#include "shaders/precision.glsl"
+#include "gather/channels.glsl"
+#include "gather/shaded_point.glsl"
+#include "receiver/surface.glsl"
+
+uniform highp sampler2DArray pn_maps;
+uniform highp sampler2DArray pn_range; // the range pyramid, or what the technique puts in its place
+layout(location = 0) out vec4 pn_out;
+#if PN_DEBUG
+layout(location = 1) out vec4 pn_search_out;
+vec4 pn_search_report();
+#endif
+
+pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r);
+
+pn_Visibility pn_pixel_visibility(ivec2 pixel) {
+  if (!pn_receives(pixel)) return pn_Visibility(1.0);
+  pn_Surface s = pn_surface(pixel);
+  pn_ShadedPoint r = pn_shaded_point(0, s.p, s.error, s.n, s.sigma);
+  if (pn_unlit(0, r) || pn_above_casters(0, r)) return pn_Visibility(1.0);
+  return clamp(pn_technique(0, pn_maps, pn_range, r), 0.0, 1.0);
+}
+
+#if PN_UPSAMPLE
+#include "gather/upsample.glsl"
+#endif
+
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+#if PN_UPSAMPLE
+  pn_Visibility v = pn_upsampled(at);
+#else
+  pn_Visibility v = pn_pixel_visibility(min(at * pn_offset.z + pn_offset.w, pn_view.zw - 1));
+#endif
+  pn_out = pn_visibility_texel(v);
+#if PN_DEBUG
+  pn_search_out = pn_search_report();
+#endif
+}

@@ -1,0 +1,23 @@
+/* Programs of the host's that contain the library's forward text: their samplers, block and textures. */
+#ifndef PNI_GL_HOST_PROGRAM_H
+#define PNI_GL_HOST_PROGRAM_H
+
+#include "gl/buffer.h"
+#include "gl/texture.h"
+
+/* Texture units and uniform block bindings that this device has. */
+void pni_host_limits(pni_gpu *gpu, int *units, int *bindings);
+
+/* One sampler array element: the uniform's name, its unit, what is bound there. */
+typedef struct {
+  char name[24];
+  int unit;
+  const pni_texture *texture; /* NULL: the sampler gets its unit, nothing is bound */
+} pni_host_sampler;
+
+/* Sets samplers and block of a program and binds them; the program and the active unit stay the host's. False, and nothing
+ * done, where there is no such program, or it has no block pn_block. */
+bool pni_host_program_bind(pni_gpu *gpu, pn_gl program, const pni_buffer *block, int binding,
+                           const pni_host_sampler *samplers, int count);
+
+#endif

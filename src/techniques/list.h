@@ -1,0 +1,9 @@
+/* The techniques there are, in the order in which they are listed: src/techniques/NAME/ defines pni_technique_NAME. */
+PNI_TECHNIQUE(hard)
+PNI_TECHNIQUE(pcf)
+PNI_TECHNIQUE(pcss)
+PNI_TECHNIQUE(average)
+PNI_TECHNIQUE(ssm)
+PNI_TECHNIQUE(backprojection)
+PNI_TECHNIQUE(bitmask)
+PNI_TECHNIQUE(smoothies)
