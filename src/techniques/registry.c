@@ -6,11 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define PNI_TECHNIQUE(name) extern const pni_technique_class pni_technique_##name;
+#include "techniques/list.h"
+#undef PNI_TECHNIQUE
+
+#define PNI_TECHNIQUE(name) &pni_technique_##name,
 static const pni_technique_class *const classes[] = {
-    &pni_technique_hard,    &pni_technique_pcf,       &pni_technique_pcss,
-    &pni_technique_average, &pni_technique_ssm,       &pni_technique_backprojection,
-    &pni_technique_bitmask, &pni_technique_smoothies,
+#include "techniques/list.h"
 };
+#undef PNI_TECHNIQUE
+
 enum { COUNT = sizeof classes / sizeof *classes };
 
 int pn_technique_count(void) { return COUNT; }

@@ -1,4 +1,5 @@
-/* What a technique is. To add one: a folder with its table and shader, and a line in registry.c. */
+/* What a technique is. To add one: a folder with its table and shader, which defines pni_technique_NAME, and a line in
+ * list.h. */
 #ifndef PN_TECHNIQUES_TECHNIQUE_H
 #define PN_TECHNIQUES_TECHNIQUE_H
 
@@ -63,8 +64,5 @@ void pni_technique_defines(const pni_technique_class *technique, const double *v
 /* Sets one of values by the parameter's name; false, with the message that fits, when there is none or the value is
  * not one of its own. */
 bool pni_parameter_set(const pn_technique *table, const char *name, double value, double *values, pn_message *message);
-
-extern const pni_technique_class pni_technique_hard, pni_technique_pcf, pni_technique_pcss, pni_technique_average,
-    pni_technique_ssm, pni_technique_backprojection, pni_technique_bitmask, pni_technique_smoothies;
 
 #endif
