@@ -94,7 +94,8 @@ static GLuint stage(GLenum kind, const char *text) {
 }
 
 GLuint gl_program(const char *vertex, const char *fragment) {
-  GLuint program = glCreateProgram(), shaders[2] = {stage(GL_VERTEX_SHADER, vertex), stage(GL_FRAGMENT_SHADER, fragment)};
+  GLuint shaders[2] = {stage(GL_VERTEX_SHADER, vertex), stage(GL_FRAGMENT_SHADER, fragment)};
+  GLuint program = glCreateProgram();
   for (int i = 0; i < 2; i++) {
     glAttachShader(program, shaders[i]);
     glDeleteShader(shaders[i]);
@@ -110,7 +111,8 @@ GLuint gl_program(const char *vertex, const char *fragment) {
   return program;
 }
 
-static float *read_image(GLenum point, GLuint texture, int level, int layer, int width, int height, GLenum layout, int channels) {
+static float *read_image(GLenum point, GLuint texture, int level, int layer, int width, int height, GLenum layout,
+                         int channels) {
   GLuint framebuffer;
   glGenFramebuffers(1, &framebuffer);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);

@@ -1,4 +1,5 @@
-/* Casters over a ground that only receives, seen from straight above under a light that looks down: the scene of closed forms. */
+/* Casters over a ground that only receives, seen from straight above under a light that looks down: the scene of closed
+ * forms. */
 #ifndef TEST_OVER_GROUND_H
 #define TEST_OVER_GROUND_H
 

@@ -11,8 +11,15 @@ static const double L = 4, h = 1.5, half_square = 0.6;
 static double clamp(double x, double low, double high) { return fmin(fmax(x, low), high); }
 
 static camera from_above(int size, double half_height) {
-  return (camera){.width = size, .height = size, .eye = v3(0.013, 10, 0.007), .target = v3(0.013, 0, 0.007), .up = v3(0, 0, -1),
-                  .orthographic = true, .half_height = half_height, .near = 1, .far = 20};
+  return (camera){.width = size,
+                  .height = size,
+                  .eye = v3(0.013, 10, 0.007),
+                  .target = v3(0.013, 0, 0.007),
+                  .up = v3(0, 0, -1),
+                  .orthographic = true,
+                  .half_height = half_height,
+                  .near = 1,
+                  .far = 20};
 }
 
 /* ---- the square over the plane ---- */
@@ -33,7 +40,8 @@ static double hidden(const square_case *c, double x, double a) {
 }
 
 static pn_light_desc square_light(const square_case *c, int map) {
-  pn_light_desc light = c->sun ? sun_along(v3(0, -1, 0), c->a, c->b, map) : light_at(v3(0, L, 0), v3(0, -1, 0), c->a, c->b, map);
+  pn_light_desc light =
+      c->sun ? sun_along(v3(0, -1, 0), c->a, c->b, map) : light_at(v3(0, L, 0), v3(0, -1, 0), c->a, c->b, map);
   light.fit = c->fit;
   return light;
 }
@@ -44,8 +52,8 @@ static double texel_of(const stage *s, bool sun) { /* on the ground */
   return fmax(info.s1 - info.s0, info.t1 - info.t0) / (info.width - 2) * (sun ? 1 : L);
 }
 
-/* Along x where all of the other axis is hidden: 2 V - 1 outside the hard shadow, within 0.01; 0 inside; 1 exactly where V is 1. A texel at each
- * end belongs to neither. */
+/* Along x where all of the other axis is hidden: 2 V - 1 outside the hard shadow, within 0.01; 0 inside; 1 exactly
+ * where V is 1. A texel at each end belongs to neither. */
 static void check_square(const square_case *c) {
   enum { SIZE = 160 };
   soup ground = {0}, square = {0};
@@ -68,15 +76,17 @@ static void check_square(const square_case *c) {
     double outside = fmax(fabs(p.x), fabs(p.z)) - half_square / scale;
     double V = 1 - across[0] * across[1];
     if (outside < -texel) inside += visibility[i] == 0, assert_true(visibility[i] == 0);
-    double reach[2] = {(half_square + c->a * (c->sun ? h : h / L)) / scale, (half_square + c->b * (c->sun ? h : h / L)) / scale};
-    if (fabs(p.x) > reach[0] + texel || fabs(p.z) > reach[1] + texel) lit += visibility[i] == 1, assert_true(visibility[i] == 1);
+    double reach[2] = {(half_square + c->a * (c->sun ? h : h / L)) / scale,
+                       (half_square + c->b * (c->sun ? h : h / L)) / scale};
+    if (fabs(p.x) > reach[0] + texel || fabs(p.z) > reach[1] + texel)
+      lit += visibility[i] == 1, assert_true(visibility[i] == 1);
     if (outside < texel || (across[0] < 1 && across[1] < 1)) continue;
     if (fabs(fabs(p.x) - reach[0]) < texel || fabs(fabs(p.z) - reach[1]) < texel) continue;
     worst = fmax(worst, fabs(visibility[i] - (2 * V - 1)));
     between += V < 1;
   }
-  print_message("%s, %s of %g x %g, fit %d: off by %.4f, %d pixels in the penumbra\n", c->spec, c->sun ? "sun" : "rectangle", c->a, c->b, (int)c->fit,
-                worst, between);
+  print_message("%s, %s of %g x %g, fit %d: off by %.4f, %d pixels in the penumbra\n", c->spec,
+                c->sun ? "sun" : "rectangle", c->a, c->b, (int)c->fit, worst, between);
   assert_true(inside > 300 && between > 100 && lit > 300);
   assert_true(worst <= 0.01);
   free(visibility);
@@ -97,8 +107,8 @@ static void test_square(void **state) {
       }
 }
 
-/* A width in map units, as in the notes: alpha / (1 - b / r), alpha the distance in the map over the width; under a sun b and r count from the
- * nearest caster's plane. */
+/* A width in map units, as in the notes: alpha / (1 - b / r), alpha the distance in the map over the width; under a sun
+ * b and r count from the nearest caster's plane. */
 static void test_width(void **state) {
   (void)state;
   enum { SIZE = 96 };
@@ -120,7 +130,8 @@ static void test_width(void **state) {
     pn_maps_info info;
     assert_ok(pn_light_maps(s.light, &info));
     double texel = (info.s1 - info.s0) / (info.width - 2), worst = 0;
-    double w_b = sun ? h - 0.0 : 1 / (L - h), w_r = sun ? 0 : 1 / L; /* a sun's w = height, its origin that of the scene */
+    double w_b = sun ? h - 0.0 : 1 / (L - h),
+           w_r = sun ? 0 : 1 / L; /* a sun's w = height, its origin that of the scene */
     int between = 0;
     for (int i = 0; i < SIZE * SIZE; i++) {
       vec p = view_point(&v, i % SIZE, i / SIZE);
@@ -144,7 +155,8 @@ static void test_width(void **state) {
 
 /* ---- contact ---- */
 
-/* Whether a vertical line from the ground at p up to the light's centre passes the box [-e, e] x [0, top] x [-e, e], moved in by margin. */
+/* Whether a vertical line from the ground at p up to the light's centre passes the box [-e, e] x [0, top] x [-e, e],
+ * moved in by margin. */
 static bool box_hides(vec p, vec light, double e, double top, double margin) {
   double low = 0, high = 1;
   const double from[3] = {p.x, p.y, p.z}, to[3] = {light.x, light.y, light.z};
@@ -157,7 +169,8 @@ static bool box_hides(vec p, vec light, double e, double top, double margin) {
   return low < high && low * length(sub(light, p)) > 1e-6;
 }
 
-/* A box that stands on the ground: the shadow of the light's centre is dark right up to it, whatever the light's size. */
+/* A box that stands on the ground: the shadow of the light's centre is dark right up to it, whatever the light's
+ * size. */
 static void test_contact(void **state) {
   (void)state;
   enum { SIZE = 128 };
@@ -168,7 +181,14 @@ static void test_contact(void **state) {
   soup_box(&box, v3(-e, 0, -e), v3(e, top, e));
   int box_triangles = surfaces.count;
   soup_patch(&surfaces, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
-  camera k = {.width = SIZE, .height = SIZE, .eye = v3(5, 6, 3), .target = v3(1, 0, 0.3), .up = v3(0, 1, 0), .half_height = 0.25, .near = 1, .far = 30};
+  camera k = {.width = SIZE,
+              .height = SIZE,
+              .eye = v3(5, 6, 3),
+              .target = v3(1, 0, 0.3),
+              .up = v3(0, 1, 0),
+              .half_height = 0.25,
+              .near = 1,
+              .far = 30};
   view v;
   view_draw(&v, &k, &surfaces);
   vec centre = v3(-2.1, 3, 0.4);
@@ -202,8 +222,8 @@ static void test_contact(void **state) {
 
 /* ---- a slanted edge ---- */
 
-/* Where the light that is seen along a line across the edge would begin, if it began at once, in texels; its standard deviation over many
- * lines. The camera looks straight down with the edge as its vertical. */
+/* Where the light that is seen along a line across the edge would begin, if it began at once, in texels; its standard
+ * deviation over many lines. The camera looks straight down with the edge as its vertical. */
 static double deviation(const char *spec, double *width) {
   enum { ACROSS = 400, ALONG = 160 };
   const double angle = 0.23;
@@ -212,8 +232,15 @@ static double deviation(const char *spec, double *width) {
   soup_patch(&ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
   soup_patch(&plate, v3(0, h, 0), mul(half_square, x), mul(half_square, z));
   vec middle = mul(half_square / (1 - h / L), x);
-  camera k = {.width = ACROSS, .height = ALONG, .eye = add(middle, v3(0, 10, 0)), .target = middle, .up = mul(-1, z), .orthographic = true,
-              .half_height = 0.2, .near = 1, .far = 20};
+  camera k = {.width = ACROSS,
+              .height = ALONG,
+              .eye = add(middle, v3(0, 10, 0)),
+              .target = middle,
+              .up = mul(-1, z),
+              .orthographic = true,
+              .half_height = 0.2,
+              .near = 1,
+              .far = 20};
   view v;
   stage s;
   view_draw(&v, &k, &ground);
