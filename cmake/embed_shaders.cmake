@@ -1,11 +1,11 @@
 # Turns .glsl files into one C file, as src/gl/embedded.h declares it.
 #
-#   included:  penumbra_embed_shaders(<variable> <directory> [file...]) puts the generated file's path into <variable>; the files
-#              are relative to the directory, by default every .glsl file below it
+#   included:  penumbra_embed_shaders(<variable> <directory> [file...]) puts the generated file's path into <variable>;
+#              the files are relative to the directory, by default every .glsl file below it
 #   as script: cmake -DROOT=... -DLIST=... -DOUTPUT=... -P embed_shaders.cmake does the writing, at build time
 #
-# The text is written as bytes, since string literals have a length limit and an escape for half of what GLSL comments may
-# contain.
+# The text is written as bytes, since string literals have a length limit and an escape for half of what GLSL comments
+# may contain.
 
 if(NOT CMAKE_SCRIPT_MODE_FILE)
   set(embed_shaders_script "${CMAKE_CURRENT_LIST_FILE}")

@@ -23,7 +23,8 @@ target_compile_definitions(penumbra_settings INTERFACE _DEFAULT_SOURCE)
 
 if(PENUMBRA_SANITIZE)
   # Checks that the compiler adds make it see values that no run has; the other builds warn about the real ones.
-  target_compile_options(penumbra_settings INTERFACE -Wno-format-truncation -Wno-maybe-uninitialized -Wno-stringop-overflow)
+  target_compile_options(penumbra_settings INTERFACE -Wno-format-truncation -Wno-maybe-uninitialized
+                         -Wno-stringop-overflow)
   # For the whole tree, since a sanitizer's runtime must be in every executable.
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)

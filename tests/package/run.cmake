@@ -15,8 +15,8 @@ run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/installed")
 file(RENAME "${WORK}/installed" "${root}") # the package files name no place of their own
 
 function(run_consumer program)
-  execute_process(COMMAND "${CMAKE_COMMAND}" -E env "LD_LIBRARY_PATH=${root}/${LIBDIR}" "${program}" OUTPUT_VARIABLE output
-                  OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND "${CMAKE_COMMAND}" -E env "LD_LIBRARY_PATH=${root}/${LIBDIR}" "${program}"
+                  OUTPUT_VARIABLE output OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   if(NOT output STREQUAL VERSION)
     message(FATAL_ERROR "${program} printed '${output}' instead of '${VERSION}'")
   endif()

@@ -1,5 +1,5 @@
-# Penumbra inside a host's project, by add_subdirectory. The host can use both targets; nothing else of it changes: not its
-# cache but for entries of Penumbra's own, no variable and no property of its directory, nothing that it installs.
+# Penumbra inside a host's project, by add_subdirectory. The host can use both targets; nothing else of it changes: not
+# its cache but for entries of penumbra's own, no variable and no property of its directory, nothing that it installs.
 cmake_minimum_required(VERSION 3.22)
 
 # Quiet unless it fails.
@@ -12,8 +12,8 @@ function(run)
 endfunction()
 
 function(configure name)
-  run("${CMAKE_COMMAND}" -S "${HOST}" -B "${WORK}/${name}" -G "${GENERATOR}" "-DCMAKE_C_COMPILER=${CC}" "-DPROGRAM=${PROGRAM}"
-      -DCMAKE_INSTALL_PREFIX=${WORK}/installed-${name} ${ARGN})
+  run("${CMAKE_COMMAND}" -S "${HOST}" -B "${WORK}/${name}" -G "${GENERATOR}" "-DCMAKE_C_COMPILER=${CC}"
+      "-DPROGRAM=${PROGRAM}" "-DCMAKE_INSTALL_PREFIX=${WORK}/installed-${name}" ${ARGN})
 endfunction()
 
 # The files below ${directory}, as a list.
@@ -22,10 +22,11 @@ function(files_below variable directory)
   set(${variable} "${files}" PARENT_SCOPE)
 endfunction()
 
-# "NAME:TYPE=VALUE" of a build directory's cache, but for what penumbra may add to it: its options, what it looked for, and what
-# CMake itself keeps about both.
-set(own "^(PENUMBRA_|penumbra_|epoxy_|pkgcfg_lib_epoxy_|PKG_CONFIG_)")
-string(APPEND own "|^(__pkg_config_|prefix_result:|FIND_PACKAGE_MESSAGE_DETAILS_PkgConfig|CMAKE_NUMBER_OF_MAKEFILES)|^PENUMBRA:")
+# "NAME:TYPE=VALUE" of a build directory's cache, but for what penumbra may add to it: its options, what it looked for,
+# and what CMake itself keeps about both. PENUMBRA is the test's.
+set(own "^(PENUMBRA:|PENUMBRA_|penumbra_|epoxy_|pkgcfg_lib_epoxy_|PKG_CONFIG_)")
+string(APPEND own
+       "|^(__pkg_config_|prefix_result:|FIND_PACKAGE_MESSAGE_DETAILS_PkgConfig|CMAKE_NUMBER_OF_MAKEFILES)")
 function(cache_of variable name)
   file(STRINGS "${WORK}/${name}/CMakeCache.txt" lines REGEX "^[A-Za-z_][A-Za-z_0-9-]*:[A-Z]+=")
   list(FILTER lines EXCLUDE REGEX "${own}")

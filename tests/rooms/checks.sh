@@ -79,9 +79,14 @@ printf 'low | low/ | high\nhigh | high/ | low\ntool | tool/ |\n' >part
 says 1 'low may use high, which is not above it' arrows src part
 
 # GL: a call, a macro, a constant, a type, a header; comments and strings are none.
-printf 'int glow(int globe); // glClear(GL_COLOR)\n/* GLuint\n   glFinish() */ const char *s = "glEnd()\\" GL_X"; char c = %s;\n' "'\"'" >src/high/d.h
+cat >src/high/d.h <<'END'
+int glow(int globe); // glClear(GL_COLOR)
+/* GLuint
+   glFinish() */ const char *s = "glEnd()\" GL_X"; char c = '"';
+END
 says 0 '' gl src low
-for text in 'glFinish()' 'x = GL (Enable)(1)' 'int i = GL_RED;' 'GLuint i;' '#include <epoxy/gl.h>' '/* */ glFinish ();'; do
+for text in 'glFinish()' 'x = GL (Enable)(1)' 'int i = GL_RED;' 'GLuint i;' '#include <epoxy/gl.h>' \
+  '/* */ glFinish ();'; do
   printf '\n%s\n' "$text" >src/high/d.h
   says 1 'src/high/d.h:2: ' gl src low
 done

@@ -1,9 +1,9 @@
 #!/bin/sh
-# The rooms of a folder of sources, held against what design and CONTRIBUTING.md say. Says what is wrong and exits with 1.
+# The rooms of a folder of sources, held against what is to be so. Says what is wrong, and exits with 1 then.
 #
 #   rooms.sh includes FOLDER                no circle of includes: X.c with X.h is one unit, a .glsl file is one
 #   rooms.sh symbols OBJECTS                no circle of symbols between object files
-#   rooms.sh arrows FOLDER TABLE [OBJECTS]  what the includes and symbols of one room use of another is allowed by the table
+#   rooms.sh arrows FOLDER TABLE [OBJECTS]  what includes and symbols use of another room is allowed by the table
 #   rooms.sh gl FOLDER ROOM                 only FOLDER/ROOM/ calls GL and knows its names
 #   rooms.sh names ARCHIVE HEADER           outside names begin with pni_, or with pn_ where the header declares them
 #   rooms.sh columns [FOLDER]               no line is longer than 120 columns
