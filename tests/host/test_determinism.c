@@ -30,10 +30,23 @@ static int techniques(const char *out[TECHNIQUES_MOST]) {
   return count;
 }
 
+/* The scene, cast from memory, and its receiver. */
+static void open_scene(host *h, camera_view *v) {
+  camera view = camera_at(0);
+  assert_int_equal(host_view(h, &view, v), PN_OK);
+  assert_int_equal(host_cast(h, CAST_MEMORY), PN_OK);
+}
+
+static pn_light *light_with(host *h, const char *spec) {
+  pn_light_desc desc = host_light_desc();
+  pn_light *light = NULL;
+  assert_int_equal(host_light(h, &desc, spec, &light), PN_OK);
+  return light;
+}
+
 /* Again in the same context, and again in a new one. */
 static void test_twice(void **state) {
   host *h = *state;
-  camera view = camera_at(0);
   camera_view v;
   const char *all[TECHNIQUES_MOST];
   float *first[TECHNIQUES_MOST];
@@ -43,12 +56,9 @@ static void test_twice(void **state) {
       pn_context_destroy(&h->context);
       assert_int_equal(host_context(h), PN_OK);
     }
-    assert_int_equal(host_view(h, &view, &v), PN_OK);
-    assert_int_equal(host_cast(h, CAST_MEMORY), PN_OK);
+    open_scene(h, &v);
     for (int i = 0; i < count; i++) {
-      pn_light_desc desc = host_light_desc();
-      pn_light *light = NULL;
-      assert_int_equal(host_light(h, &desc, all[i], &light), PN_OK);
+      pn_light *light = light_with(h, all[i]);
       float *image = host_visibility(h, light, &v);
       assert_non_null(image);
       if (pass == 0) {
@@ -90,16 +100,12 @@ static int same_maps(const pn_maps_info *a, const pn_maps_info *b) {
  * and right of that, in the picture, everything stays. */
 static void test_still_caster(void **state) {
   host *h = *state;
-  camera view = camera_at(0);
   camera_view v;
   const char *all[TECHNIQUES_MOST];
   int moved_something = 0, count = techniques(all);
-  assert_int_equal(host_view(h, &view, &v), PN_OK);
-  assert_int_equal(host_cast(h, CAST_MEMORY), PN_OK);
+  open_scene(h, &v);
   for (int i = 0; i < count; i++) {
-    pn_light_desc desc = host_light_desc();
-    pn_light *light = NULL;
-    assert_int_equal(host_light(h, &desc, all[i], &light), PN_OK);
+    pn_light *light = light_with(h, all[i]);
     shot still = shoot(h, light, &v, h->instances[SCENE_SLAB], -0.3);
     for (int step = 1; step <= 4; step++) {
       shot next = shoot(h, light, &v, h->instances[SCENE_SLAB], -0.3 + 0.0173 * step);
@@ -128,12 +134,10 @@ static void test_still_caster(void **state) {
 static void test_bounds_snap(void **state) {
   enum { SMALL_STEPS = 60 };
   host *h = *state;
-  pn_light_desc desc = host_light_desc();
-  pn_light *light = NULL;
   pn_maps_info last = {0}, now;
   int changes = 0;
   assert_int_equal(host_cast(h, CAST_MEMORY), PN_OK);
-  assert_int_equal(host_light(h, &desc, "hard", &light), PN_OK);
+  pn_light *light = light_with(h, "hard");
   for (int step = 0; step <= SMALL_STEPS; step++) {
     float place[16];
     memcpy(place, h->world.meshes[SCENE_BOX].place, sizeof place);

@@ -2,14 +2,7 @@
 # its cache but for entries of penumbra's own, no variable and no property of its directory, nothing that it installs.
 cmake_minimum_required(VERSION 3.22)
 
-# Quiet unless it fails.
-function(run)
-  execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result)
-  if(NOT result EQUAL 0)
-    list(JOIN ARGN " " command)
-    message(FATAL_ERROR "${command}\n${output}")
-  endif()
-endfunction()
+include("${CMAKE_CURRENT_LIST_DIR}/quietly.cmake")
 
 function(configure name)
   run("${CMAKE_COMMAND}" -S "${HOST}" -B "${WORK}/${name}" -G "${GENERATOR}" "-DCMAKE_C_COMPILER=${CC}"

@@ -78,6 +78,14 @@ int gl_run(const char *name, const struct CMUnitTest *tests, size_t count) {
   return failed ? 1 : 0;
 }
 
+/* Fails the running test with what GL says about a shader or a program that is not what it should be. */
+static void demand(GLint done, PFNGLGETSHADERINFOLOGPROC read_log, GLuint object) {
+  char log[2000] = "";
+  if (done) return;
+  read_log(object, sizeof log, NULL, log);
+  fail_msg("%s", log);
+}
+
 static GLuint stage(GLenum kind, const char *text) {
   const char *parts[] = {"#version 330 core\n", text};
   GLuint shader = glCreateShader(kind);
@@ -85,11 +93,7 @@ static GLuint stage(GLenum kind, const char *text) {
   glCompileShader(shader);
   GLint done = 0;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &done);
-  if (!done) {
-    char log[2000] = "";
-    glGetShaderInfoLog(shader, sizeof log, NULL, log);
-    fail_msg("%s", log);
-  }
+  demand(done, glGetShaderInfoLog, shader);
   return shader;
 }
 
@@ -103,11 +107,7 @@ GLuint gl_program(const char *vertex, const char *fragment) {
   glLinkProgram(program);
   GLint done = 0;
   glGetProgramiv(program, GL_LINK_STATUS, &done);
-  if (!done) {
-    char log[2000] = "";
-    glGetProgramInfoLog(program, sizeof log, NULL, log);
-    fail_msg("%s", log);
-  }
+  demand(done, glGetProgramInfoLog, program);
   return program;
 }
 
