@@ -10,6 +10,7 @@ foreach(kind IN ITEMS shared static)
     set(target penumbra_static)
   endif()
   # Two export files, because only users of the static library need libepoxy's development files.
+  target_include_directories(${target} INTERFACE "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   install(TARGETS ${target} EXPORT penumbra-${kind} LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
           ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
   install(EXPORT penumbra-${kind} NAMESPACE penumbra:: FILE penumbra-${kind}.cmake DESTINATION "${package_dir}")
@@ -45,4 +46,9 @@ endif()
 if(EXISTS "${PROJECT_SOURCE_DIR}/docs/penumbra.1")
   install(FILES docs/penumbra.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 endif()
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" OPTIONAL)
+# Where this is a part of another project, CMAKE_INSTALL_DOCDIR is that project's.
+set(doc_dir "${CMAKE_INSTALL_DOCDIR}")
+if(NOT PROJECT_IS_TOP_LEVEL)
+  set(doc_dir "${CMAKE_INSTALL_DATAROOTDIR}/doc/penumbra")
+endif()
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${doc_dir}" OPTIONAL)

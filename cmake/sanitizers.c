@@ -1,4 +1,5 @@
-/* Linked into every executable of the sanitizer build: what the sanitizers' run-time libraries ask a program at its start. */
+/* Linked into every executable of the sanitizer build: what the sanitizers' run-time libraries ask a program at its
+ * start. */
 
 const char *__ubsan_default_options(void);
 const char *__lsan_default_options(void);
@@ -9,7 +10,8 @@ const char *__ubsan_default_options(void) { return "print_stacktrace=1"; }
 
 const char *__lsan_default_options(void) { return "print_suppressions=0"; }
 
-/* Leaks of OpenGL drivers and of what lies around them, and caches that live as long as the process; no caller can free them. */
+/* Leaks of OpenGL drivers and of what lies around them, and caches that live as long as the process; no caller can free
+ * them. */
 const char *__lsan_default_suppressions(void) {
   return "leak:libEGL\n"
          "leak:libGL\n"

@@ -3,9 +3,12 @@
 set(CMAKE_C_STANDARD 17)
 set(CMAKE_C_STANDARD_REQUIRED ON)
 set(CMAKE_C_EXTENSIONS OFF)
-set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
-if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+# A project that this one is a part of decides these for all of its parts.
+if(PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+endif()
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "Release, RelWithDebInfo or Debug" FORCE)
 endif()
 
@@ -20,7 +23,8 @@ target_compile_definitions(penumbra_settings INTERFACE _DEFAULT_SOURCE)
 
 if(PENUMBRA_SANITIZE)
   # Checks that the compiler adds make it see values that no run has; the other builds warn about the real ones.
-  target_compile_options(penumbra_settings INTERFACE -Wno-format-truncation -Wno-maybe-uninitialized -Wno-stringop-overflow)
+  target_compile_options(penumbra_settings INTERFACE -Wno-format-truncation -Wno-maybe-uninitialized
+                         -Wno-stringop-overflow)
   # For the whole tree, since a sanitizer's runtime must be in every executable.
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)

@@ -46,34 +46,32 @@ static void assert_closed(const struct mesh *mesh) {
   free(edges);
 }
 
-static void corner(const struct mesh *mesh, uint32_t triangle, int k, double out[3]) {
-  const float *p = &mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)triangle + (size_t)k]];
-  for (int i = 0; i < 3; i++) out[i] = p[i];
+static void corners(const struct mesh *mesh, uint32_t triangle, double out[3][3]) {
+  for (int k = 0; k < 3; k++) {
+    const float *p = &mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)triangle + (size_t)k]];
+    for (int i = 0; i < 3; i++) out[k][i] = p[i];
+  }
 }
 
 /* Six times the volume by the divergence theorem: positive where triangles wind counter-clockwise seen from outside. */
 static double volume6(const struct mesh *mesh) {
   double sum = 0;
   for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-    double a[3], b[3], c[3], n[3];
-    corner(mesh, t, 0, a);
-    corner(mesh, t, 1, b);
-    corner(mesh, t, 2, c);
-    v3_cross(b, c, n);
-    sum += v3_dot(a, n);
+    double p[3][3], n[3];
+    corners(mesh, t, p);
+    v3_cross(p[1], p[2], n);
+    sum += v3_dot(p[0], n);
   }
   return sum;
 }
 
 static void assert_areas(const struct mesh *mesh) {
   for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-    double a[3], b[3], c[3], n[3];
-    corner(mesh, t, 0, a);
-    corner(mesh, t, 1, b);
-    corner(mesh, t, 2, c);
-    v3_sub(b, a, b);
-    v3_sub(c, a, c);
-    v3_cross(b, c, n);
+    double p[3][3], n[3];
+    corners(mesh, t, p);
+    v3_sub(p[1], p[0], p[1]);
+    v3_sub(p[2], p[0], p[2]);
+    v3_cross(p[1], p[2], n);
     assert_true(v3_length(n) > 0);
   }
 }

@@ -202,6 +202,20 @@ void host_view_close(camera_view *self) {
   target_close(&self->target);
 }
 
+pn_result host_lit_view(host *self, cast_kind kind, const pn_light_desc *desc, const char *technique, lit_view *out) {
+  camera view = camera_at(0);
+  *out = (lit_view){0};
+  pn_result result = host_view(self, &view, &out->v);
+  if (result == PN_OK) result = host_cast(self, kind);
+  return result == PN_OK ? host_light(self, desc, technique, &out->light) : result;
+}
+
+void host_lit_view_close(host *self, lit_view *lit) {
+  pn_light_destroy(&lit->light);
+  host_uncast(self);
+  host_view_close(&lit->v);
+}
+
 float *host_result(pn_light *light, pn_receiver *receiver) {
   pn_image image;
   if (pn_result_image(light, receiver, &image) != PN_OK || image.target != GL_TEXTURE_2D) return NULL;

@@ -65,6 +65,14 @@ pn_receiver_desc host_receiver_desc(const camera *view, const depth_target *targ
 pn_result host_view(host *self, const camera *view, camera_view *out);
 void host_view_close(camera_view *self);
 
+/* What many tests begin with: the scene cast so, seen by camera_at(0), under one light. */
+typedef struct {
+  camera_view v;
+  pn_light *light;
+} lit_view;
+pn_result host_lit_view(host *self, cast_kind kind, const pn_light_desc *desc, const char *technique, lit_view *out);
+void host_lit_view_close(host *self, lit_view *lit);
+
 /* Maps and visibility; the pair's result, width * height floats from the bottom row, malloced; NULL when anything
  * fails. */
 float *host_visibility(host *self, pn_light *light, const camera_view *view);

@@ -26,13 +26,18 @@ static int usable(const char *spec) {
   return pn_technique_parse(spec, &technique, NULL, NULL, 0) == PN_OK && !technique->needs_meshes;
 }
 
-static float *shadow(host *h, cast_kind kind, const char *technique, const camera_view *v) {
-  /* The bounds are given, so that all three ways have the same map: casters' vertices may be fitted more tightly than a
-   * box. */
+/* The bounds are given, so that all three ways have the same map: casters' vertices may be fitted more tightly than a
+ * box. */
+static pn_light_desc fitted_desc(const host *h) {
   pn_light_desc desc = host_light_desc();
-  pn_light *light = NULL;
   desc.fit = PN_FIT_GIVEN;
   scene_bounds(&h->world, desc.fit_bounds);
+  return desc;
+}
+
+static float *shadow(host *h, cast_kind kind, const char *technique, const camera_view *v) {
+  pn_light_desc desc = fitted_desc(h);
+  pn_light *light = NULL;
   assert_int_equal(host_cast(h, kind), PN_OK);
   assert_int_equal(host_light(h, &desc, technique, &light), PN_OK);
   float *image = host_visibility(h, light, v);
@@ -156,56 +161,52 @@ static void test_holes(void **state) {
   assert_true(share > 0.22 && share < 0.34);
 }
 
-/* Another phase of the wave, written into the host's buffer: the shadow is that of a mesh that was posed so from the
- * beginning. */
+/* A moved mesh's shadow is that of one which was posed so from the beginning. */
+static void check_as_posed(host *h, cast_kind kind, const float *moved, const camera_view *v) {
+  float *anew = shadow(h, kind, "pcss", v);
+  assert_non_null(moved);
+  assert_memory_equal(moved, anew, PIXELS * sizeof *moved);
+  free(anew);
+}
+
+/* Another phase of the wave, written into the host's buffer. */
 static void test_deforming(void **state) {
   host *h = *state;
-  camera view = camera_at(0);
-  camera_view v;
-  pn_light_desc desc = host_light_desc();
-  pn_light *light = NULL;
-  desc.fit = PN_FIT_GIVEN;
-  assert_int_equal(host_view(h, &view, &v), PN_OK);
-  assert_int_equal(host_cast(h, CAST_BUFFERS), PN_OK);
-  scene_bounds(&h->world, desc.fit_bounds);
-  assert_int_equal(host_light(h, &desc, "pcss", &light), PN_OK);
-  float *before = host_visibility(h, light, &v);
+  pn_light_desc desc = fitted_desc(h);
+  lit_view lit;
+  assert_int_equal(host_lit_view(h, CAST_BUFFERS, &desc, "pcss", &lit), PN_OK);
+  float *before = host_visibility(h, lit.light, &lit.v);
   assert_non_null(before);
   scene_pose(&h->world, 2.0f);
-  scene_bounds(&h->world, desc.fit_bounds);
-  assert_int_equal(pn_light_set(light, &desc), PN_OK);
+  desc = fitted_desc(h);
+  assert_int_equal(pn_light_set(lit.light, &desc), PN_OK);
   renderer_pose(&h->draw, &h->world);
   const mesh *flag = &h->world.meshes[SCENE_FLAG];
   float bounds[6];
   memcpy(bounds, flag->bounds_min, sizeof flag->bounds_min);
   memcpy(bounds + 3, flag->bounds_max, sizeof flag->bounds_max);
   assert_int_equal(pn_mesh_moved(h->casters, h->meshes[SCENE_FLAG], NULL, bounds), PN_OK);
-  float *moved = host_visibility(h, light, &v);
-  pn_light_destroy(&light);
+  float *moved = host_visibility(h, lit.light, &lit.v);
   host_uncast(h);
-  float *anew = shadow(h, CAST_BUFFERS, "pcss", &v), *memory = shadow(h, CAST_MEMORY, "pcss", &v);
-  assert_non_null(moved);
-  assert_memory_equal(moved, anew, PIXELS * sizeof *moved);
-  assert_memory_equal(moved, memory, PIXELS * sizeof *moved);
+  check_as_posed(h, CAST_BUFFERS, moved, &lit.v);
+  check_as_posed(h, CAST_MEMORY, moved, &lit.v);
   assert_true(agree(before, CAMERA_WIDTH, CAMERA_HEIGHT, 0, 0, moved, CAMERA_WIDTH, CAMERA_HEIGHT, NULL).sum > 20);
-  free(before), free(moved), free(anew), free(memory);
+  free(before), free(moved);
   scene_pose(&h->world, 0);
   renderer_pose(&h->draw, &h->world);
-  host_view_close(&v);
+  host_lit_view_close(h, &lit);
 }
 
-/* The same with data in memory. */
+/* The same with data in memory, moved before anything is drawn. */
 static void test_deforming_memory(void **state) {
   host *h = *state;
   camera view = camera_at(0);
   camera_view v;
-  pn_light_desc desc = host_light_desc();
   pn_light *light = NULL;
-  desc.fit = PN_FIT_GIVEN;
   assert_int_equal(host_view(h, &view, &v), PN_OK);
   assert_int_equal(host_cast(h, CAST_MEMORY), PN_OK);
   scene_pose(&h->world, 2.0f);
-  scene_bounds(&h->world, desc.fit_bounds);
+  pn_light_desc desc = fitted_desc(h);
   assert_int_equal(host_light(h, &desc, "pcss", &light), PN_OK);
   const mesh *flag = &h->world.meshes[SCENE_FLAG];
   pn_span positions = {.data = flag->posed, .count = (size_t)flag->vertex_count};
@@ -213,10 +214,8 @@ static void test_deforming_memory(void **state) {
   float *moved = host_visibility(h, light, &v);
   pn_light_destroy(&light);
   host_uncast(h);
-  float *anew = shadow(h, CAST_MEMORY, "pcss", &v);
-  assert_non_null(moved);
-  assert_memory_equal(moved, anew, PIXELS * sizeof *moved);
-  free(moved), free(anew);
+  check_as_posed(h, CAST_MEMORY, moved, &v);
+  free(moved);
   scene_pose(&h->world, 0);
   host_view_close(&v);
 }
@@ -224,40 +223,34 @@ static void test_deforming_memory(void **state) {
 /* Removing what casts, group masks, and a mirrored instance. */
 static void test_instances(void **state) {
   host *h = *state;
-  camera view = camera_at(0);
-  camera_view v;
   pn_light_desc desc = host_light_desc();
-  pn_light *light = NULL;
+  lit_view lit;
   pn_instance mirrored;
-  assert_int_equal(host_view(h, &view, &v), PN_OK);
-  assert_int_equal(host_cast(h, CAST_MEMORY), PN_OK);
-  assert_int_equal(host_light(h, &desc, "pcss", &light), PN_OK);
-  float *all = host_visibility(h, light, &v);
+  assert_int_equal(host_lit_view(h, CAST_MEMORY, &desc, "pcss", &lit), PN_OK);
+  float *all = host_visibility(h, lit.light, &lit.v);
   float place[16];
   memcpy(place, h->world.meshes[SCENE_TORUS].place, sizeof place);
   for (int i = 0; i < 3; i++) place[i] = -place[i];
   assert_int_equal(pn_instance_add(h->casters, h->meshes[SCENE_TORUS], place, 5, &mirrored), PN_OK);
   assert_int_equal(pn_instance_move(h->casters, mirrored, place), PN_OK);
-  assert_int_equal(pn_maps_update(light, h->casters, 1u << 0, NULL, 0), PN_OK);
-  assert_int_equal(pn_visibility(light, v.receiver), PN_OK);
-  float *without = host_result(light, v.receiver);
+  assert_int_equal(pn_maps_update(lit.light, h->casters, 1u << 0, NULL, 0), PN_OK);
+  assert_int_equal(pn_visibility(lit.light, lit.v.receiver), PN_OK);
+  float *without = host_result(lit.light, lit.v.receiver);
   assert_memory_equal(all, without, PIXELS * sizeof *all);
   assert_int_equal(pn_instance_remove(h->casters, mirrored), PN_OK);
   assert_int_equal(pn_mesh_remove(h->casters, h->meshes[SCENE_TORUS]), PN_OK);
-  float *less = host_visibility(h, light, &v);
+  float *less = host_visibility(h, lit.light, &lit.v);
   assert_true(agree(all, CAMERA_WIDTH, CAMERA_HEIGHT, 0, 0, less, CAMERA_WIDTH, CAMERA_HEIGHT, NULL).sum > 100);
   for (int i = 0; i < SCENE_MESHES; i++) {
     if (h->world.meshes[i].casts && i != SCENE_TORUS) assert_int_equal(pn_mesh_remove(h->casters, h->meshes[i]), PN_OK);
   }
-  float *none = host_visibility(h, light, &v);
+  float *none = host_visibility(h, lit.light, &lit.v);
   for (int i = 0; i < PIXELS; i++) assert_true(none[i] == 1);
   pn_maps_info maps;
-  assert_int_equal(pn_light_maps(light, &maps), PN_OK);
+  assert_int_equal(pn_light_maps(lit.light, &maps), PN_OK);
   assert_true(maps.empty);
   free(all), free(without), free(less), free(none);
-  pn_light_destroy(&light);
-  host_uncast(h);
-  host_view_close(&v);
+  host_lit_view_close(h, &lit);
 }
 
 int main(void) {

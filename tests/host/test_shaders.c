@@ -37,30 +37,24 @@ static pn_result prepare_with(host *h, const char *text) {
 
 static void test_broken(void **state) {
   host *h = *state;
-  camera view = camera_at(0);
-  camera_view v;
   pn_light_desc desc = host_light_desc();
-  pn_light *light = NULL;
-  assert_int_equal(host_cast(h, CAST_MEMORY), PN_OK);
-  assert_int_equal(host_view(h, &view, &v), PN_OK);
-  assert_int_equal(host_light(h, &desc, "hard", &light), PN_OK);
-  float *before = host_visibility(h, light, &v);
+  lit_view lit;
+  assert_int_equal(host_lit_view(h, CAST_MEMORY, &desc, "hard", &lit), PN_OK);
+  float *before = host_visibility(h, lit.light, &lit.v);
   assert_non_null(before);
   assert_true(dark_pixels(before, CAMERA_WIDTH, CAMERA_HEIGHT) > 1000);
   assert_int_equal(prepare_with(h, "this is no shader\n"), PN_ERROR_SHADER);
   assert_int_equal(h->log.counts[PN_MESSAGE_SHADER_COMPILE], 1);
-  assert_int_equal(pn_visibility(light, v.receiver), PN_ERROR_SHADER);
+  assert_int_equal(pn_visibility(lit.light, lit.v.receiver), PN_ERROR_SHADER);
   assert_int_equal(prepare_with(h, "#include \"nowhere/at/all.glsl\"\n"), PN_ERROR_SHADER);
   assert_int_equal(h->log.counts[PN_MESSAGE_SHADER_MISSING], 1);
   assert_non_null(strstr(h->log.last, "nowhere/at/all.glsl"));
   assert_int_equal(prepare_with(h, NULL), PN_OK);
-  float *after = host_visibility(h, light, &v);
+  float *after = host_visibility(h, lit.light, &lit.v);
   assert_non_null(after);
   assert_memory_equal(before, after, CAMERA_WIDTH * CAMERA_HEIGHT * sizeof *before);
   free(before), free(after);
-  pn_light_destroy(&light);
-  host_view_close(&v);
-  host_uncast(h);
+  host_lit_view_close(h, &lit);
 }
 
 /* What is in the directory is what runs: everything in shadow. */
@@ -70,20 +64,14 @@ static void test_edited(void **state) {
                                 "float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, "
                                 "pn_Receiver r) { return 0.0; }\n"),
                    PN_OK);
-  camera view = camera_at(0);
-  camera_view v;
   pn_light_desc desc = host_light_desc();
-  pn_light *light = NULL;
-  assert_int_equal(host_cast(h, CAST_MEMORY), PN_OK);
-  assert_int_equal(host_view(h, &view, &v), PN_OK);
-  assert_int_equal(host_light(h, &desc, "hard", &light), PN_OK);
-  float *image = host_visibility(h, light, &v);
+  lit_view lit;
+  assert_int_equal(host_lit_view(h, CAST_MEMORY, &desc, "hard", &lit), PN_OK);
+  float *image = host_visibility(h, lit.light, &lit.v);
   assert_non_null(image);
   assert_true(dark_pixels(image, CAMERA_WIDTH, CAMERA_HEIGHT) > CAMERA_WIDTH * CAMERA_HEIGHT / 3);
   free(image);
-  pn_light_destroy(&light);
-  host_view_close(&v);
-  host_uncast(h);
+  host_lit_view_close(h, &lit);
   write_shader(NULL);
 }
 

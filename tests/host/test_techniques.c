@@ -28,8 +28,8 @@ static int is_lit(const truth_light *light, int x, int y) {
          truth_sees_all(light, &h.world, v3_of(seen.position + 4 * i), v3_of(seen.normal + 3 * i));
 }
 
-/* What is scattered into a map is known at its texels, which here are about as far apart as the view's pixels: a pixel next
- * to a penumbra may have some of it. */
+/* What is scattered into a map is known at its texels, which here are about as far apart as the view's pixels: a pixel
+ * next to a penumbra may have some of it. */
 static int is_lit_around(const truth_light *light, int x, int y, int distance) {
   for (int dy = -distance; dy <= distance; dy++)
     for (int dx = -distance; dx <= distance; dx++) {

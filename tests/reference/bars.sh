@@ -17,11 +17,13 @@ holds() { # AWK CONDITION WITH a AND b
 }
 case $2 in
 ratio)
-  "$program" compare $bunny --split --size 512x384 --reference-samples 256 --frames 1 --no-cache -t hard -t pcss --json "$work/out.json" || exit 1
+  "$program" compare $bunny --split --size 512x384 --reference-samples 256 --frames 1 --no-cache -t hard -t pcss \
+    --json "$work/out.json" || exit 1
   holds "$(mean 1)" "$(mean 2)" "a > 0 && b > 0 && a / b >= 2.5"
   ;;
 average)
-  "$program" compare $bunny --split --size 512x384 --map 1024 --frames 1 --no-cache -t average:samples=1024 --json "$work/out.json" || exit 1
+  "$program" compare $bunny --split --size 512x384 --map 1024 --frames 1 --no-cache -t average:samples=1024 \
+    --json "$work/out.json" || exit 1
   holds "$(mean 1)" 0.004 "a > 0 && a <= b"
   ;;
 esac

@@ -26,10 +26,13 @@ if rows split; then
   bar "bunny split: pcss (a) over two maps, quads (b)" "$(value split pcss mae)" "a >= 5 * b" "$(value split $quad mae)"
   bar "bunny split: pcss (a) over four layers (b)" "$(value split pcss mae)" "a >= 5 * b" "$(value split $four mae)"
   bar "bunny split: default" "$(value split bitmask mae)" "a <= 0.010" 0
-  bar "bunny split: merge=1 (a) against merge=0 (b)" "$(value split bitmask mae)" "a <= b + 0.001" "$(value split $quad mae)"
-  bar "bunny split: the same with patches" "$(value split bitmask:primitive=patch mae)" "a <= b + 0.001" "$(value split $patch mae)"
+  bar "bunny split: merge=1 (a) against merge=0 (b)" "$(value split bitmask mae)" "a <= b + 0.001" \
+    "$(value split $quad mae)"
+  bar "bunny split: the same with patches" "$(value split bitmask:primitive=patch mae)" "a <= b + 0.001" \
+    "$(value split $patch mae)"
   for label in bitmask bitmask:primitive=patch; do
-    bar "bunny split: $label, blocks visited (a), texels in windows (b)" "$(value split $label visited)" "20 * a <= b" "$(value split $label window)"
+    bar "bunny split: $label, blocks visited (a), texels in windows (b)" "$(value split $label visited)" "20 * a <= b" \
+      "$(value split $label window)"
   done
 fi
 
@@ -37,7 +40,8 @@ if rows self; then
   measure self "$size" $bunny -t $quad -t bitmask
   bar "bunny self: two maps, quads" "$(value self $quad mae)" "a <= 0.012" 0
   bar "bunny self: default" "$(value self bitmask mae)" "a <= 0.015" 0
-  bar "bunny self: merge=1 (a) against merge=0 (b)" "$(value self bitmask mae)" "a <= b + 0.001" "$(value self $quad mae)"
+  bar "bunny self: merge=1 (a) against merge=0 (b)" "$(value self bitmask mae)" "a <= b + 0.001" \
+    "$(value self $quad mae)"
 fi
 
 if rows fusion; then
@@ -47,7 +51,8 @@ if rows fusion; then
     bar "$scene: two maps" "$(value $scene $quad mae)" "a <= 0.012" 0
     bar "$scene: four layers" "$(value $scene $four_quads mae)" "a <= 0.012" 0
   done
-  bar "silhouette-standing: four layers (a) beat two maps (b)" "$(value $scene $four_quads mae)" "a < b" "$(value $scene $quad mae)"
+  bar "silhouette-standing: four layers (a) beat two maps (b)" "$(value $scene $four_quads mae)" "a < b" \
+    "$(value $scene $quad mae)"
 fi
 
 if rows focus; then
@@ -55,16 +60,20 @@ if rows focus; then
   for scene in $bunny builtin:balls builtin:silhouette builtin:boxes builtin:leaves builtin:room builtin:copies; do
     name=${scene##*[:/]}
     measure focus-$name "$small" $scene -t bitmask:maps=front -t $all,focus=50 -t $all,focus=75 -t $all
-    bar "$name: later layers over half of the map (a), one layer (b)" "$(value focus-$name $all,focus=50 mae)" "a <= b" "$(value focus-$name bitmask:maps=front mae)"
-    bar "$name: later layers over three quarters (a), over half (b)" "$(value focus-$name $all,focus=75 mae)" "a <= b" "$(value focus-$name $all,focus=50 mae)"
-    bar "$name: all of the later layers (a), three quarters (b)" "$(value focus-$name $all mae)" "a <= b + 0.0001" "$(value focus-$name $all,focus=75 mae)"
+    bar "$name: later layers over half of the map (a), one layer (b)" "$(value focus-$name $all,focus=50 mae)" \
+      "a <= b" "$(value focus-$name bitmask:maps=front mae)"
+    bar "$name: later layers over three quarters (a), over half (b)" "$(value focus-$name $all,focus=75 mae)" "a <= b" \
+      "$(value focus-$name $all,focus=50 mae)"
+    bar "$name: all of the later layers (a), three quarters (b)" "$(value focus-$name $all mae)" "a <= b + 0.0001" \
+      "$(value focus-$name $all,focus=75 mae)"
   done
 fi
 
 if rows samples; then
   for scene in $scenes; do
     measure samples-$scene "$small" builtin:$scene -t bitmask -t bitmask:samples=32
-    bar "$scene: 16 x 16 jittered (a) against 32 x 32 (b)" "$(value samples-$scene bitmask mae)" "a - b <= 0.002 && b - a <= 0.002" \
+    bar "$scene: 16 x 16 jittered (a) against 32 x 32 (b)" \
+      "$(value samples-$scene bitmask mae)" "a - b <= 0.002 && b - a <= 0.002" \
       "$(value samples-$scene bitmask:samples=32 mae)"
   done
 fi
@@ -72,7 +81,8 @@ fi
 if rows merge; then
   for scene in $scenes; do
     measure merge-$scene "$small" builtin:$scene -t $quad -t bitmask
-    bar "$scene: merge=1 (a) against merge=0 (b)" "$(value merge-$scene bitmask mae)" "a <= b + 0.001" "$(value merge-$scene $quad mae)"
+    bar "$scene: merge=1 (a) against merge=0 (b)" "$(value merge-$scene bitmask mae)" "a <= b + 0.001" \
+      "$(value merge-$scene $quad mae)"
   done
 fi
 

@@ -41,7 +41,8 @@ run 0 compare "${scene[@]}" --save-dir a --json a.json -o a.png --html a.html
 grep -q "million rays a second" out || fail "not traced: $(cat out)"
 run 0 compare "${scene[@]}" --save-dir b --json b.json
 grep -q "from the cache" out || fail "not from the cache: $(cat out)"
-taskset -c "$(taskset -pc $$ | sed 's/.*: *\([0-9]*\).*/\1/')" "$program" compare "${scene[@]}" --no-cache --save-dir c --json c.json >out 2>err ||
+taskset -c "$(taskset -pc $$ | sed 's/.*: *\([0-9]*\).*/\1/')" "$program" \
+  compare "${scene[@]}" --no-cache --save-dir c --json c.json >out 2>err ||
   fail "with one processor: $(cat err)"
 grep -q "million rays a second" out || fail "--no-cache was not traced: $(cat out)"
 expected="01-hard.exr 02-pcss-samples=4.exr mask.exr normal.exr position.exr reference.exr"
@@ -56,7 +57,8 @@ grep -q '"label":.*"pcss:samples=4"' a.json || fail "label"
 grep -q '"file":.*"02-pcss-samples=4.exr"' a.json || fail "file"
 head -c 8 a.png | cmp -s - <(printf '\x89PNG\r\n\x1a\n') || fail "the sheet is no PNG"
 for line in a/reference.exr a.png a.html a.json; do
-  "$program" compare "${scene[@]}" --save-dir a --json a.json -o a.png --html a.html 2>err | grep -qx "$line" || fail "$line is not printed"
+  "$program" compare "${scene[@]}" --save-dir a --json a.json -o a.png --html a.html 2>err | grep -qx "$line" ||
+    fail "$line is not printed"
 done
 
 echo "== JSON on standard output stands alone"
@@ -74,7 +76,9 @@ done
 echo "== a cache that cannot be used is ignored with one warning, a damaged file never believed"
 entry=$(ls cache/penumbra/reference/*.visibility | head -1)
 run 0 compare "${scene[@]}" --save-dir d
-for entry in cache/penumbra/reference/*.visibility; do printf 'x' | dd of="$entry" bs=1 seek=500 conv=notrunc 2>/dev/null; done
+for entry in cache/penumbra/reference/*.visibility; do
+  printf 'x' | dd of="$entry" bs=1 seek=500 conv=notrunc 2>/dev/null
+done
 run 0 compare "${scene[@]}" --save-dir d
 says damaged
 cmp -s a/reference.exr d/reference.exr || fail "a damaged cache was believed"
@@ -115,7 +119,8 @@ done
 [ -e sheet.exr ] && fail "a refused file exists"
 
 echo "== interrupted"
-"$program" compare builtin:balls --no-cache --reference-samples 65536 --frames 1 -t hard -o never.png --save-dir never >out 2>err &
+"$program" compare builtin:balls --no-cache --reference-samples 65536 --frames 1 -t hard -o never.png \
+  --save-dir never >out 2>err &
 child=$!
 sleep 2
 begun=$SECONDS

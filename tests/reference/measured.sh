@@ -1,5 +1,5 @@
-# What the scripts of bars share: a program's results by technique, and bars over them. Sourced after `program` and `parts`
-# are set. Every result is printed; a bar that is missed counts.
+# What the scripts of bars share: a program's results by technique, and bars over them. Sourced after `program` and
+# `parts` are set. Every result is printed; a bar that is missed counts.
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 export XDG_CACHE_HOME=$work/cache
@@ -14,14 +14,20 @@ measure() {
     exit 1
   }
   awk '/"label":/ { label = $2; gsub(/"|",?$/, "", label) }
-       /"(mae|max|visited|window|primitives|covered|median|depth_map|extents|accumulate)":[ \t]*[0-9]/ { key = $1; gsub(/[":]/, "", key); print label, key, $2 + 0 }' \
+       /"(mae|max|visited|window|primitives|covered|median|depth_map|extents|accumulate)":[ \t]*[0-9]/ {
+         key = $1
+         gsub(/[":]/, "", key)
+         print label, key, $2 + 0
+       }' \
     "$work/$name.json" >"$work/$name"
-  awk -v name="$name" '$2 == "mae" { label = $1; mae = $3 } $2 == "max" && label != "" { printf "  %-28s %-58s %.4f  max %.3f\n", name, label, mae, $3; label = "" }' \
+  awk -v name="$name" '$2 == "mae" { label = $1; mae = $3 }
+       $2 == "max" && label != "" { printf "  %-28s %-58s %.4f  max %.3f\n", name, label, mae, $3; label = "" }' \
     "$work/$name"
 }
 
 value() { # NAME LABEL KEY
-  awk -v label="$2" -v key="$3" '$1 == label && $2 == key { print $3; found = 1 } END { if (!found) print "missing" }' "$work/$1"
+  awk -v label="$2" -v key="$3" '$1 == label && $2 == key { print $3; found = 1 } END { if (!found) print "missing" }' \
+    "$work/$1"
 }
 
 # With known=1 before it a bar that is missed is shown as such, and does not count: the page of the technique says why.

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # What smoothies may cost, in ratios of medians that were measured in turn in one run.
 #   smoothies.sh PROGRAM
-# The smoothie passes at most 2.5 times the depth map of the same mesh, of 70,000 triangles; the whole technique at most twice hard; and
-# four times the edges at most six times the time. Every ratio is printed.
+# The smoothie passes at most 2.5 times the depth map of the same mesh, of 70,000 triangles; the whole technique at most
+# twice hard; and four times the edges at most six times the time. Every ratio is printed.
 set -u
 program=$1
 bunny=/usr/share/glmark2/models/bunny.obj
@@ -12,10 +12,14 @@ missed=0
 
 # stage LABEL STAGE of the last measurement
 stage() {
-  awk -v label="\"$1\"," -v stage="\"$2\":" '$1 == "\"label\":" { here = $2 == label } here && $1 == stage { value = $2 } END { print value + 0 }' "$work/bench.json"
+  awk -v label="\"$1\"," -v stage="\"$2\":" '$1 == "\"label\":" { here = $2 == label }
+    here && $1 == stage { value = $2 }
+    END { print value + 0 }' "$work/bench.json"
 }
 total() {
-  awk -v label="\"$1\"," '$1 == "\"label\":" { here = $2 == label } here && $1 == "\"median\":" && !seen { value = $2; seen = here } END { print value + 0 }' "$work/bench.json"
+  awk -v label="\"$1\"," '$1 == "\"label\":" { here = $2 == label }
+    here && $1 == "\"median\":" && !seen { value = $2; seen = here }
+    END { print value + 0 }' "$work/bench.json"
 }
 bar() { # TEXT A B MOST
   awk -v text="$1" -v a="$2" -v b="$3" -v most="$4" 'BEGIN {

@@ -34,24 +34,30 @@ if rows sides; then
     measure sides-$scene "$small" builtin:$scene --split --map 256 -t ssm -t ssm:sides=front
     known= # steep walls that stand on the floor are counted more than once, from the farther side too
     [ $scene = cylinder ] && known=1
-    bar "$scene: two-sided (a), one-sided (b)" "$(value sides-$scene ssm mae)" "a <= b + 0.002" "$(value sides-$scene ssm:sides=front mae)"
+    bar "$scene: two-sided (a), one-sided (b)" "$(value sides-$scene ssm mae)" "a <= b + 0.002" \
+      "$(value sides-$scene ssm:sides=front mae)"
     known=
   done
 fi
 
-if rows square; then # the paper's discretisation peaks: the frustum stays while the map's texels move over the square's edges
+# The paper's discretisation peaks: the frustum stays while the map's texels move over the square's edges.
+if rows square; then
   rm -f "$work/square"
   for map in $(seq 230 281); do
-    "$program" compare builtin:square --split --quiet --size "$size" --frames 1 --map $map --fit=-0.5,0.59,-0.5,0.5,0.61,0.5 \
-      --json "$work/square.json" -t ssm >/dev/null || exit 1
+    "$program" compare builtin:square --split --quiet --size "$size" --frames 1 --map $map \
+      --fit=-0.5,0.59,-0.5,0.5,0.61,0.5 --json "$work/square.json" -t ssm >/dev/null || exit 1
     awk -v map=$map '/"mae":/ { print $2 + 0, map }' "$work/square.json" >>"$work/square"
   done
-  sort -g "$work/square" | awk '{ v[NR] = $1; m[NR] = $2 } END { printf "  least %.4f at %d, median %.4f, most %.4f at %d\n", v[1], m[1], v[int((NR + 1) / 2)], v[NR], m[NR] }'
+  sort -g "$work/square" | awk '{ v[NR] = $1; m[NR] = $2 }
+    END {
+      printf "  least %.4f at %d, median %.4f, most %.4f at %d\n", v[1], m[1], v[int((NR + 1) / 2)], v[NR], m[NR]
+    }'
   bar "square, maps 230 to 281: most" "$(sort -g "$work/square" | tail -1 | cut -d' ' -f1)" "a <= 0.008" 0
   bar "square, maps 230 to 281: median" "$(sort -g "$work/square" | sed -n 26p | cut -d' ' -f1)" "a <= 0.004" 0
 fi
 
-if rows sizes; then # Fig. 17: falls to about 200, then flattens; under a light a quarter of the bunny wide, that texels matter to
+# Fig. 17: falls to about 200, then flattens; under a light a quarter of the bunny wide, that texels matter to.
+if rows sizes; then
   for map in 50 100 200 400; do measure size-$map "$size" $bunny --split --map $map --light-size 0.5 -t $both; done
   bar "bunny split, map 50 (a), 200 (b)" "$(value size-50 $both mae)" "a > b" "$(value size-200 $both mae)"
   bar "bunny split, map 200 (a), 400 (b)" "$(value size-200 $both mae)" "a <= 1.15 * b" "$(value size-400 $both mae)"
@@ -63,10 +69,14 @@ if rows light; then # Figs. 18 to 20
     set -- $pair
     bar "light $1 (a), $2 (b)" "$(value light-$1 $both mae)" "a < b" "$(value light-$2 $both mae)"
   done
-  for x in 0 2 4; do measure aside-$x "$size" $bunny --split --map 128 --light-center $x,5,0 --light-target $x,-1,0 -t $both; done
+  for x in 0 2 4; do
+    measure aside-$x "$size" $bunny --split --map 128 --light-center $x,5,0 --light-target $x,-1,0 -t $both
+  done
   known=1 bar "light above (a), aside (b)" "$(value aside-0 $both mae)" "a < b" "$(value aside-2 $both mae)"
   known=1 bar "light aside (a), farther (b)" "$(value aside-2 $both mae)" "a < b" "$(value aside-4 $both mae)"
-  for y in 5 3 2; do measure near-$y "$size" $bunny --split --map 128 --light-size 1 --light-center 0,$y,0 -t $both; done
+  for y in 5 3 2; do
+    measure near-$y "$size" $bunny --split --map 128 --light-size 1 --light-center 0,$y,0 -t $both
+  done
   bar "light far (a), near (b)" "$(value near-5 $both mae)" "a < b" "$(value near-3 $both mae)"
   bar "light near (a), nearer (b)" "$(value near-3 $both mae)" "a < b" "$(value near-2 $both mae)"
 fi
@@ -74,7 +84,8 @@ fi
 if rows sums; then # Fig. 14
   measure sums "$size" $bunny --split --map 512 -t $both -t $both,accumulate=fp16 -t $both,accumulate=fp16-batched
   bar "512: 16 bits (a) against 32 (b)" "$(value sums $both,accumulate=fp16 mae)" "a > 2 * b" "$(value sums $both mae)"
-  bar "512: by batches (a) against 32 bits (b)" "$(value sums $both,accumulate=fp16-batched mae)" "a <= b + 0.004" "$(value sums $both mae)"
+  bar "512: by batches (a) against 32 bits (b)" "$(value sums $both,accumulate=fp16-batched mae)" "a <= b + 0.004" \
+    "$(value sums $both mae)"
 fi
 
 if rows self; then
@@ -84,10 +95,14 @@ fi
 
 if rows merge; then
   measure merge "$size" $bunny --split --map 512 --frames 3 -t ssm:merge=1,layers=1 -t $both -t ssm:layers=1
-  bar "covered texels: merge=1 (a), merge=0 (b)" "$(value merge ssm:merge=1,layers=1 covered)" "5 * a <= b" "$(value merge $both covered)"
-  bar "time: merge=1 (a), merge=0 (b)" "$(value merge ssm:merge=1,layers=1 median)" "3 * a <= b" "$(value merge $both median)"
-  bar "error: default (a), merge=0 (b)" "$(value merge ssm:layers=1 mae)" "a - b <= 0.002 && b - a <= 0.002" "$(value merge $both mae)"
-  bar "error: merge=1 (a), merge=0 (b)" "$(value merge ssm:merge=1,layers=1 mae)" "a - b <= 0.002 && b - a <= 0.002" "$(value merge $both mae)"
+  bar "covered texels: merge=1 (a), merge=0 (b)" "$(value merge ssm:merge=1,layers=1 covered)" "5 * a <= b" \
+    "$(value merge $both covered)"
+  bar "time: merge=1 (a), merge=0 (b)" "$(value merge ssm:merge=1,layers=1 median)" "3 * a <= b" \
+    "$(value merge $both median)"
+  bar "error: default (a), merge=0 (b)" "$(value merge ssm:layers=1 mae)" "a - b <= 0.002 && b - a <= 0.002" \
+    "$(value merge $both mae)"
+  bar "error: merge=1 (a), merge=0 (b)" "$(value merge ssm:merge=1,layers=1 mae)" "a - b <= 0.002 && b - a <= 0.002" \
+    "$(value merge $both mae)"
 fi
 
 if rows extents; then
@@ -101,13 +116,16 @@ fi
 if rows linear; then # section 6: texels times covered texels, and triangles
   for map in 64 128 256 512; do
     measure linear-$map "$size" $bunny --split --map $map --frames 5 --reference-samples 1 -t $front,size=128
-    echo "  map $map: $(value linear-$map $front,size=128 covered) covered, $(value linear-$map $front,size=128 accumulate) ms"
+    echo "  map $map: $(value linear-$map $front,size=128 covered) covered," \
+      "$(value linear-$map $front,size=128 accumulate) ms"
   done
-  bar "16 times the texels: time at 128 (a), at 512 (b)" "$(value linear-128 $front,size=128 accumulate)" "b <= 20 * a" \
+  bar "16 times the texels: time at 128 (a), at 512 (b)" \
+    "$(value linear-128 $front,size=128 accumulate)" "b <= 20 * a" \
     "$(value linear-512 $front,size=128 accumulate)"
   for copies in 16 64 256; do
     measure copies-$copies "$size" builtin:copies=$copies --split --map 128 --frames 15 --reference-samples 1 -t $front
-    echo "  $copies copies: maps $(value copies-$copies $front depth_map) ms, all $(value copies-$copies $front median) ms"
+    echo "  $copies copies: maps $(value copies-$copies $front depth_map) ms," \
+      "all $(value copies-$copies $front median) ms"
   done
 fi
 

@@ -78,6 +78,14 @@ int gl_run(const char *name, const struct CMUnitTest *tests, size_t count) {
   return failed ? 1 : 0;
 }
 
+/* Fails the running test with what GL says about a shader or a program that is not what it should be. */
+static void demand(GLint done, PFNGLGETSHADERINFOLOGPROC read_log, GLuint object) {
+  char log[2000] = "";
+  if (done) return;
+  read_log(object, sizeof log, NULL, log);
+  fail_msg("%s", log);
+}
+
 static GLuint stage(GLenum kind, const char *text) {
   const char *parts[] = {"#version 330 core\n", text};
   GLuint shader = glCreateShader(kind);
@@ -85,16 +93,13 @@ static GLuint stage(GLenum kind, const char *text) {
   glCompileShader(shader);
   GLint done = 0;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &done);
-  if (!done) {
-    char log[2000] = "";
-    glGetShaderInfoLog(shader, sizeof log, NULL, log);
-    fail_msg("%s", log);
-  }
+  demand(done, glGetShaderInfoLog, shader);
   return shader;
 }
 
 GLuint gl_program(const char *vertex, const char *fragment) {
-  GLuint program = glCreateProgram(), shaders[2] = {stage(GL_VERTEX_SHADER, vertex), stage(GL_FRAGMENT_SHADER, fragment)};
+  GLuint shaders[2] = {stage(GL_VERTEX_SHADER, vertex), stage(GL_FRAGMENT_SHADER, fragment)};
+  GLuint program = glCreateProgram();
   for (int i = 0; i < 2; i++) {
     glAttachShader(program, shaders[i]);
     glDeleteShader(shaders[i]);
@@ -102,15 +107,12 @@ GLuint gl_program(const char *vertex, const char *fragment) {
   glLinkProgram(program);
   GLint done = 0;
   glGetProgramiv(program, GL_LINK_STATUS, &done);
-  if (!done) {
-    char log[2000] = "";
-    glGetProgramInfoLog(program, sizeof log, NULL, log);
-    fail_msg("%s", log);
-  }
+  demand(done, glGetProgramInfoLog, program);
   return program;
 }
 
-static float *read_image(GLenum point, GLuint texture, int level, int layer, int width, int height, GLenum layout, int channels) {
+static float *read_image(GLenum point, GLuint texture, int level, int layer, int width, int height, GLenum layout,
+                         int channels) {
   GLuint framebuffer;
   glGenFramebuffers(1, &framebuffer);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);

@@ -6,9 +6,10 @@
 
 enum { CALL_RESULTS = 8 };
 
-/* text defines void call(): it reads taken(0) .. taken(vectors - 1), four floats each, and writes results[0] .. results[7], four uints each (floats
- * through floatBitsToUint). The library's files come before it. For each of count inputs 32 uints, freed by the caller.
- * Samplers named pni_maps and pn_range are the library's units, as they are bound. */
+/* text defines void call(): it reads taken(0) .. taken(vectors - 1), four floats each, and writes results[0] ..
+ * results[7], four uints each (floats through floatBitsToUint). The library's files come before it. For each of count
+ * inputs 32 uints, freed by the caller. Samplers named pni_maps and pn_range are the library's units, as they are
+ * bound. */
 typedef struct {
   const char *const *paths; /* below src/, ends with NULL */
   const char *defines;      /* lines "NAME VALUE\n" */

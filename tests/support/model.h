@@ -1,4 +1,5 @@
-/* The models of glmark2-data, read without the program: OBJ (v and f lines of triangles) and 3DS (its vertex and face chunks). */
+/* The models of glmark2-data, read without the program: OBJ (v and f lines of triangles) and 3DS (its vertex and face
+ * chunks). */
 #ifndef TEST_MODEL_H
 #define TEST_MODEL_H
 

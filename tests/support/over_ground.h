@@ -1,4 +1,5 @@
-/* Casters over a ground that only receives, seen from straight above under a light that looks down: the scene of closed forms. */
+/* Casters over a ground that only receives, seen from straight above under a light that looks down: the scene of closed
+ * forms. */
 #ifndef TEST_OVER_GROUND_H
 #define TEST_OVER_GROUND_H
 
@@ -10,11 +11,16 @@
 typedef struct {
   stage s;
   view v;
-  soup ground, casters; /* casters: filled before the scene is opened */
+  /* Filled before the scene is opened: casters, and the ground where it is not to be a wide one. */
+  soup ground, casters;
+  bool from_depth; /* the receiver has no normals */
 } over_ground;
 
-/* The view has size x size pixels and reaches half_height to each side. */
+/* Straight from above: size x size pixels that reach half_height to each side. */
+camera camera_over_ground(int size, double half_height);
 void over_ground_open(over_ground *c, int size, double half_height);
+/* The same scene seen by another camera. */
+void over_ground_see(over_ground *c, const camera *k);
 void over_ground_close(over_ground *c);
 pn_light_desc light_over_ground(double half_u, double half_v, int map);
 

@@ -75,8 +75,11 @@ float *stage_visibility(stage *s, const pn_light_desc *light, const char *techni
 
 light_axes axes_of(const pn_light_desc *light) {
   const float *c = light->center, *d = light->direction;
-  light_axes l = {.origin = v3(c[0], c[1], c[2]), .z = unit(v3(d[0], d[1], d[2])), .half_u = light->half_u,
-                  .half_v = light->half_v, .sun = light->shape == PN_LIGHT_SUN};
+  light_axes l = {.origin = v3(c[0], c[1], c[2]),
+                  .z = unit(v3(d[0], d[1], d[2])),
+                  .half_u = light->half_u,
+                  .half_v = light->half_v,
+                  .sun = light->shape == PN_LIGHT_SUN};
   vec up = v3(0, 1, 0);
   if (length(cross(l.z, up)) < 1e-6) up = v3(0, 0, -1);
   l.u = unit(cross(l.z, up));
@@ -84,8 +87,8 @@ light_axes axes_of(const pn_light_desc *light) {
   return l;
 }
 
-/* A sun's direction to the point with tangents (x, y): light from there travels along z - x u - y v, so that it darkens what lies at
- * s' = s - x w; the point is seen along -z + x u + y v. */
+/* A sun's direction to the point with tangents (x, y): light from there travels along z - x u - y v, so that it darkens
+ * what lies at s' = s - x w; the point is seen along -z + x u + y v. */
 vec to_light(const light_axes *l, vec p, double a, double b) {
   vec offset = add(mul(a * l->half_u, l->u), mul(b * l->half_v, l->v));
   return l->sun ? sub(offset, l->z) : sub(add(l->origin, offset), p);

@@ -177,8 +177,8 @@ pn_receiver_desc view_desc(const view *v, bool normals) {
 
 /* ---- truth ---- */
 
-/* The pixel's line holds the scene points with (row 0 - x row 3) . p = 0 and (row 1 - y row 3) . p = 0; with the triangle's plane
- * these are three linear equations. */
+/* The pixel's line holds the scene points with (row 0 - x row 3) . p = 0 and (row 1 - y row 3) . p = 0; with the
+ * triangle's plane these are three linear equations. */
 vec view_point(const view *v, int x, int y) {
   double m[16], rhs[3];
   clip_matrix(v, m);
@@ -192,7 +192,8 @@ vec view_point(const view *v, int x, int y) {
   row[2] = normal_of(t);
   rhs[2] = dot(row[2], corner_of(t, 0));
   double determinant = dot(row[0], cross(row[1], row[2]));
-  vec sum = add(mul(rhs[0], cross(row[1], row[2])), add(mul(rhs[1], cross(row[2], row[0])), mul(rhs[2], cross(row[0], row[1]))));
+  vec sum = add(mul(rhs[0], cross(row[1], row[2])),
+                add(mul(rhs[1], cross(row[2], row[0])), mul(rhs[2], cross(row[0], row[1]))));
   return mul(1 / determinant, sum);
 }
 

@@ -8,9 +8,14 @@
 /* ---- the samples, as field.glsl describes them ---- */
 
 enum { KINDS = 4 };
-static const struct { int code, grid; const char *name; } kinds[KINDS] = {{8, 8, "8"}, {16, 16, "16"}, {17, 16, "16j"}, {32, 32, "32"}};
+static const struct {
+  int code, grid;
+  const char *name;
+} kinds[KINDS] = {{8, 8, "8"}, {16, 16, "16"}, {17, 16, "16j"}, {32, 32, "32"}};
 
-typedef struct { double x, y; } point;
+typedef struct {
+  double x, y;
+} point;
 
 static point sample_at(int kind, int i, int j) {
   int n = kinds[kind].grid;
@@ -37,7 +42,8 @@ static uint32_t *run(int kind, const char *text, const float *inputs, int vector
   snprintf(defines, sizeof defines, "PN_SAMPLES %d\n", kinds[kind].code);
   snprintf(whole, sizeof whole,
            "void give(pn_Field f) { for (int i = 0; i < PN_WORDS; i++) results[i] = f.bits[i]; }\n"
-           "uint noise(inout uint h) { h ^= h << 13u; h ^= h >> 17u; h ^= h << 5u; return h; }\n%s", text);
+           "uint noise(inout uint h) { h ^= h << 13u; h ^= h >> 17u; h ^= h << 5u; return h; }\n%s",
+           text);
   stage_open(&s);
   uint32_t *out = glsl_call(&s, &(glsl_function){paths, defines, whole}, inputs, vectors, count);
   stage_close(&s);
@@ -52,15 +58,16 @@ static float adversary(uint64_t *seed) {
   int i = (int)random_in(seed, 0, 12), place = (int)random_in(seed, -2, 132);
   float at = (float)place / 128;
   switch ((int)random_in(seed, 0, 5)) {
-    case 0: return far[i];
-    case 1: return nextafterf(at, -9);
-    case 2: return nextafterf(at, 9);
-    case 3: return at;
-    default: return (float)random_in(seed, -0.2, 1.2);
+  case 0: return far[i];
+  case 1: return nextafterf(at, -9);
+  case 2: return nextafterf(at, 9);
+  case 3: return at;
+  default: return (float)random_in(seed, -0.2, 1.2);
   }
 }
 
-/* Multiplying by the grid's size and taking off an offset below 1 are exact where it matters, so every bit must be right. */
+/* Multiplying by the grid's size and taking off an offset below 1 are exact where it matters, so every bit must be
+ * right. */
 static void test_rectangles(void **state) {
   (void)state;
   enum { COUNT = 8192 };
@@ -79,7 +86,8 @@ static void test_rectangles(void **state) {
           int want = p.x >= r[0] && p.x < r[2] && p.y >= r[1] && p.y < r[3], found = bit_at(kind, out + 32 * k, i, j);
           covered += want;
           if (found != want)
-            fail_msg("%s: sample %d, %d is %d in [%.9g, %.9g) x [%.9g, %.9g)", kinds[kind].name, i, j, found, r[0], r[2], r[1], r[3]);
+            fail_msg("%s: sample %d, %d is %d in [%.9g, %.9g) x [%.9g, %.9g)", kinds[kind].name, i, j, found, r[0],
+                     r[2], r[1], r[3]);
         }
       for (int w = words_of(kind); w < 32; w++) assert_int_equal(out[32 * k + w], 0);
     }
@@ -88,7 +96,8 @@ static void test_rectangles(void **state) {
   }
 }
 
-/* Section 3: an 8 x 8 tiling of the rotated grid of 2 x 2 points: each row and each column of a tile's 4 x 4 cells is hit once. */
+/* Section 3: an 8 x 8 tiling of the rotated grid of 2 x 2 points: each row and each column of a tile's 4 x 4 cells is
+ * hit once. */
 static void test_rotated_grid(void **state) {
   (void)state;
   enum { SIDE = 32 };
@@ -112,10 +121,11 @@ static void test_rotated_grid(void **state) {
 
 /* ---- triangles ---- */
 
-static const char triangle_text[] =
-    "void call() { pn_Field f = pn_field_empty(); vec4 a = taken(0), b = taken(1); pn_add_triangle(f, a.xy, a.zw, b.xy); give(f); }";
+static const char triangle_text[] = "void call() { pn_Field f = pn_field_empty(); vec4 a = taken(0), b = taken(1); "
+                                    "pn_add_triangle(f, a.xy, a.zw, b.xy); give(f); }";
 
-/* -1 outside, 1 inside, 0 too near to an edge to say: crossings of a row are wrong by six roundings of numbers up to `size`. */
+/* -1 outside, 1 inside, 0 too near to an edge to say: crossings of a row are wrong by six roundings of numbers up to
+ * `size`. */
 static int side_of(const point *corners, int count, point p, double size) {
   int crossings = 0;
   for (int i = 0; i < count; i++) {
@@ -146,9 +156,9 @@ static void test_triangles(void **state) {
     int inside = 0, unclear = 0;
     for (int k = 0; k < COUNT; k++) {
       for (int c = 0; c < 8; c++) in[k][c] = coordinate(&seed, k, &size);
-      if (k % 16 == 5) memcpy(in[k] + 4, in[k], 8);                           /* two corners in one */
-      if (k % 16 == 6) in[k][1] = in[k][3];                                   /* a level edge */
-      if (k % 16 == 7) in[k][1] = in[k][3] = in[k][5];                        /* flat */
+      if (k % 16 == 5) memcpy(in[k] + 4, in[k], 8);    /* two corners in one */
+      if (k % 16 == 6) in[k][1] = in[k][3];            /* a level edge */
+      if (k % 16 == 7) in[k][1] = in[k][3] = in[k][5]; /* flat */
       if (k % 16 == 8) in[k][4] = 0.5f * (in[k][0] + in[k][2]), in[k][5] = 0.5f * (in[k][1] + in[k][3]);
     }
     uint32_t *out = run(kind, triangle_text, in[0], 2, COUNT);
@@ -162,8 +172,8 @@ static void test_triangles(void **state) {
           inside += side > 0;
           unclear += side == 0;
           if (side && found != (side > 0))
-            fail_msg("%s: sample %d, %d is %d in the triangle (%.9g, %.9g) (%.9g, %.9g) (%.9g, %.9g)", kinds[kind].name, i, j, found, corners[0].x,
-                     corners[0].y, corners[1].x, corners[1].y, corners[2].x, corners[2].y);
+            fail_msg("%s: sample %d, %d is %d in the triangle (%.9g, %.9g) (%.9g, %.9g) (%.9g, %.9g)", kinds[kind].name,
+                     i, j, found, corners[0].x, corners[0].y, corners[1].x, corners[1].y, corners[2].x, corners[2].y);
         }
     }
     print_message("%s: %d inside, %d unclear\n", kinds[kind].name, inside, unclear);
@@ -172,7 +182,8 @@ static void test_triangles(void **state) {
   }
 }
 
-/* A mesh over the whole light, its inner corners moved about, some onto samples: every sample lies in one triangle, never in none or two. */
+/* A mesh over the whole light, its inner corners moved about, some onto samples: every sample lies in one triangle,
+ * never in none or two. */
 static void test_meshes(void **state) {
   (void)state;
   enum { CELLS = 5, MESHES = 60, EACH = CELLS * CELLS * 2 };
@@ -185,7 +196,8 @@ static void test_meshes(void **state) {
         for (int i = 0; i <= CELLS; i++)
           for (int c = 0; c < 2; c++) {
             int place = c ? j : i;
-            double moved = (place + (place > 0 && place < CELLS ? random_in(&seed, -0.24, 0.24) : 0)) / CELLS * 1.2 - 0.1;
+            double moved =
+                (place + (place > 0 && place < CELLS ? random_in(&seed, -0.24, 0.24) : 0)) / CELLS * 1.2 - 0.1;
             at[j][i][c] = (float)(m & 1 ? round(moved * 64) / 64 : moved);
           }
       for (int k = 0; k < EACH; k++) {
@@ -220,7 +232,8 @@ static void test_count(void **state) {
                         "void call() { uint h = uint(taken(0).x) * 2654435761u; pn_Field f = pn_field_empty();\n"
                         "  for (int i = 0; i < PN_WORDS; i++) for (int c = 0; c < (PN_GRID == 8 ? 2 : 4); c++)\n"
                         "    f.bits[i][c] = uint(taken(0).x) % 7u == 0u ? 0xffffffffu : noise(h) & noise(h);\n"
-                        "  give(f); results[7].w ^= floatBitsToUint(pn_field_count(f)); }", in[0], 1, COUNT);
+                        "  give(f); results[7].w ^= floatBitsToUint(pn_field_count(f)); }",
+                        in[0], 1, COUNT);
     for (int k = 0; k < COUNT; k++) {
       uint32_t h = (uint32_t)(k + 1) * 2654435761u, last = 0;
       int want = 0;
@@ -254,7 +267,8 @@ static void test_horizon(void **state) {
     if (k % 7 == 0) in[k][4] = 0;
   }
   for (int kind = 0; kind < KINDS; kind++) {
-    uint32_t *out = run(kind, "void call() { give(pn_field_horizon(taken(0).xy, taken(0).zw, taken(1).x)); }", in[0], 2, COUNT);
+    uint32_t *out =
+        run(kind, "void call() { give(pn_field_horizon(taken(0).xy, taken(0).zw, taken(1).x)); }", in[0], 2, COUNT);
     int above = 0, below = 0;
     for (int k = 0; k < COUNT; k++) {
       const float *a = in[k];
@@ -275,7 +289,8 @@ static void test_horizon(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_rectangles), cmocka_unit_test(test_rotated_grid), cmocka_unit_test(test_triangles),
-                                     cmocka_unit_test(test_meshes), cmocka_unit_test(test_count), cmocka_unit_test(test_horizon)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_rectangles), cmocka_unit_test(test_rotated_grid),
+                                     cmocka_unit_test(test_triangles),  cmocka_unit_test(test_meshes),
+                                     cmocka_unit_test(test_count),      cmocka_unit_test(test_horizon)};
   return GL_RUN("bit fields", tests);
 }

@@ -1,4 +1,5 @@
-/* Presets of backprojection and bitmask set the other parameters, whatever is named before or after them; what is named goes over them. */
+/* Presets of backprojection and bitmask set the other parameters, whatever is named before or after them; what is named
+ * goes over them. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,7 +60,8 @@ static void test_order(void **state) {
     }
 }
 
-/* Nothing named is the default preset, and its values are those the table calls initial; presets differ from one another. */
+/* Nothing named is the default preset, and its values are those the table calls initial; presets differ from one
+ * another. */
 static void test_default(void **state) {
   (void)state;
   for (int n = 0; n < 2; n++) {
@@ -82,7 +84,8 @@ static void test_default(void **state) {
   }
 }
 
-/* The same through pn_light_parameter: a preset sets the rest, a later value goes over it, and nothing it refuses changes anything. */
+/* The same through pn_light_parameter: a preset sets the rest, a later value goes over it, and nothing it refuses
+ * changes anything. */
 static void test_light_parameter(void **state) {
   (void)state;
   stage s;

@@ -25,7 +25,13 @@ static void bench_open(bench *b) {
   memset(b, 0, sizeof *b);
   soup_patch(&b->solids, v3(0, 0, 0), v3(2, 0, 0), v3(0, 0, 2));
   soup_box(&b->solids, v3(-0.4, 0.3, -0.4), v3(0.4, 0.9, 0.4));
-  camera k = {.width = SIZE, .height = SIZE, .eye = v3(1, 3, 2.5), .up = v3(0, 1, 0), .half_height = 0.4, .near = 0.1, .far = 20};
+  camera k = {.width = SIZE,
+              .height = SIZE,
+              .eye = v3(1, 3, 2.5),
+              .up = v3(0, 1, 0),
+              .half_height = 0.4,
+              .near = 0.1,
+              .far = 20};
   view_draw(&b->v, &k, &b->solids);
   stage_open(&b->s);
   stage_cast(&b->s, &b->solids);
@@ -57,9 +63,9 @@ static void test_off_at_first(void **state) {
   bench_close(&b);
 }
 
-/* On software GL every stage ends in glFinish: stages are positive, lie one after the other inside the calls, and together they are all of
- * the calls but for state saving and the like. How much that is depends on the machine's load, so the best of some frames must be near: half
- * would already be a wrong clock, not a slow day. */
+/* On software GL every stage ends in glFinish: stages are positive, lie one after the other inside the calls, and
+ * together they are all of the calls but for state saving and the like. How much that is depends on the machine's load,
+ * so the best of some frames must be near: half would already be a wrong clock, not a slow day. */
 static void test_sum(void **state) {
   (void)state;
   bench b;
@@ -139,7 +145,7 @@ static void test_inside_a_query(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_off_at_first), cmocka_unit_test(test_sum), cmocka_unit_test(test_stages),
-                                     cmocka_unit_test(test_inside_a_query)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_off_at_first), cmocka_unit_test(test_sum),
+                                     cmocka_unit_test(test_stages), cmocka_unit_test(test_inside_a_query)};
   return GL_RUN("clock", tests);
 }

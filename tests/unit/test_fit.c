@@ -81,9 +81,10 @@ static extent3 exact_extent(const pn_casters *c, const pni_frame *f, const doubl
   return e;
 }
 
-/* Steps are a power of two of at most 2/64 of the extent, and each end moves by at most one of them: 4/64. A border texel on each side then
- * makes it N / (N - 2). Distances may move by an eighth of their power of two and a little: w_near by 1/4 at most (7/16 below 8/16 is the
- * next step of the smaller power: 1/8; rounding up never does more than 1/8), so 1/7 of w; twice that is allowed. */
+/* Steps are a power of two of at most 2/64 of the extent, and each end moves by at most one of them: 4/64. A border
+ * texel on each side then makes it N / (N - 2). Distances may move by an eighth of their power of two and a little:
+ * w_near by 1/4 at most (7/16 below 8/16 is the next step of the smaller power: 1/8; rounding up never does more than
+ * 1/8), so 1/7 of w; twice that is allowed. */
 static void assert_tight(const pni_fit_result *r, const extent3 *e, int size) {
   double least[2] = {e->least.x, e->least.y}, most[2] = {e->most.x, e->most.y};
   for (int k = 0; k < 2; k++) {
@@ -168,8 +169,8 @@ static void test_moving_inside(void **state) {
   }
 }
 
-/* Casters that fill any part of the snapped bounds which contains the first casters give the same bounds: what moves inside them, up to
- * their very edge, changes nothing. */
+/* Casters that fill any part of the snapped bounds which contains the first casters give the same bounds: what moves
+ * inside them, up to their very edge, changes nothing. */
 static void test_snapping_is_stable(void **state) {
   (void)state;
   uint64_t seed = 4;
@@ -181,7 +182,8 @@ static void test_snapping_is_stable(void **state) {
     vec centre = random_point(&seed, 3), half = v3(exp2(random_in(&seed, -4, 2)), exp2(random_in(&seed, -4, 2)), 1);
     put_box(&c, 0, centre, half);
     pni_fit_result first = fit(&c, &request);
-    /* A second box from a corner of the snapped bounds, a float's width inside, to somewhere in the first box. v is -y. */
+    /* A second box from a corner of the snapped bounds, a float's width inside, to somewhere in the first box. v is
+     * -y. */
     double s = first.bounds[0] + 1e-6 * (1 + fabs(first.bounds[0])),
            t = first.bounds[3] - 1e-6 * (1 + fabs(first.bounds[3]));
     vec corner = v3(s, -t, centre.z), size = mul(0.5, sub(centre, corner));
@@ -323,8 +325,9 @@ static bool inside_box(const pni_region *g, vec m) {
          m.z <= g->most[2];
 }
 
-/* Points of a caster box, of the light and of the region, joined: whenever a caster's point lies between the light and a receiver of the
- * region, the map must hold it. And boxes that no such line meets should not widen the map: the tight region says when. */
+/* Points of a caster box, of the light and of the region, joined: whenever a caster's point lies between the light and
+ * a receiver of the region, the map must hold it. And boxes that no such line meets should not widen the map: the tight
+ * region says when. */
 static void check_visible(bool sun, uint64_t seed, bool sheared) {
   static pn_casters c;
   pni_frame f = frame_along_z(sun, 0.8);

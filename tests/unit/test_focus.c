@@ -109,7 +109,7 @@ static void test_texels(void **state) {
       for (int i = 0; i < 4; i++) check_texels((scene_kind)kind, techniques[t], shares[i]);
 }
 
-/* ---- what comes of it ---------------------------------------------------------------------------------------------- */
+/* ---- what comes of it -------------------------------------------------------------------------------------------- */
 
 static float *look(scene_kind kind, const char *technique) {
   stage s;
@@ -135,7 +135,8 @@ static float *look(scene_kind kind, const char *technique) {
 }
 
 /* Every bit that a layer sets stays set, so more of a layer is never lighter; and there is something between. Where the
- * part ends quads lack corners, and what is left of them stands for more than its share of the whole one's rectangle. */
+ * part ends quads lack corners, and what is left of them stands for more than its share of the whole one's
+ * rectangle. */
 static void test_between(void **state) {
   (void)state;
   for (int kind = 0; kind < WIDE; kind++)
@@ -180,7 +181,7 @@ static void test_same(void **state) {
     }
 }
 
-/* ---- what a draw callback is given --------------------------------------------------------------------------------- */
+/* ---- what a draw callback is given ------------------------------------------------------------------------------- */
 
 typedef struct {
   int passes[4], inside[4];

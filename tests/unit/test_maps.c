@@ -74,7 +74,8 @@ static double plane_w(const bench *b, vec n, double c, double s, double t) {
   return b->frame.sun ? (along - c) / n.z : (along + n.z) / c;
 }
 
-/* The block says what error it expects: of a stored depth in w, and of the raster in texels, which a slope turns into w. */
+/* The block says what error it expects: of a stored depth in w, and of the raster in texels, which a slope turns into
+ * w. */
 static void check_plane(bool sun, uint64_t *seed, int width, int height) {
   bench b;
   bench_open(&b, sun);
@@ -119,7 +120,8 @@ static void test_plane(void **state) {
 enum { QUADS = 6 };
 static const double distances[QUADS] = {2, 3, 4, 5, 6, 7};
 
-/* Parallel squares, half as wide as the map at their distances, added in an order of no meaning; nested: the nearer the smaller. */
+/* Parallel squares, half as wide as the map at their distances, added in an order of no meaning; nested: the nearer the
+ * smaller. */
 static void cast_stack(bench *b) {
   static const int order[QUADS] = {3, 0, 5, 1, 4, 2};
   for (int i = 0; i < QUADS; i++) {
@@ -292,7 +294,8 @@ typedef struct {
 
 static range2 join(range2 a, range2 b) { return (range2){fmax(a.most, b.most), fmin(a.least, b.least)}; }
 
-/* What the first level holds at a texel: its own w, or that of the quad it is the lower left corner of. Nothing is beyond the map. */
+/* What the first level holds at a texel: its own w, or that of the quad it is the lower left corner of. Nothing is
+ * beyond the map. */
 static range2 first_level(const bench *b, const float *depth, int x, int y) {
   int width = b->maps.depth.width, height = b->maps.depth.height, size = b->maps.want.range.quads ? 2 : 1;
   range2 range = {-1e30, 1e30};

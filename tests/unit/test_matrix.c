@@ -22,8 +22,8 @@ static double norm(const pni_matrix *a) { /* the largest row sum */
   return largest;
 }
 
-/* Gauss-Jordan with pivoting leaves a residual |a * inverse - 1| of some rounding units times the condition number; growth of the pivots
- * is below 8 for 4 x 4, and there are 4 steps of 2 roundings. */
+/* Gauss-Jordan with pivoting leaves a residual |a * inverse - 1| of some rounding units times the condition number;
+ * growth of the pivots is below 8 for 4 x 4, and there are 4 steps of 2 roundings. */
 static double residual_bound(const pni_matrix *a, const pni_matrix *inverse) {
   return 8 * 8 * DBL_EPSILON * norm(a) * norm(inverse);
 }
@@ -45,9 +45,10 @@ static void test_inverse_times_itself(void **state) {
   }
 }
 
-/* diag(row) a diag(column) has the inverse diag(1/column) inverse(a) diag(1/row), exactly when the factors are powers of two. Other factors
- * lead to other pivots and other rounding, so what is bounded is the residual of the inverse with the factors taken out again; scaling rows
- * and columns to a largest entry of 1 changes the condition by less than its own square. */
+/* diag(row) a diag(column) has the inverse diag(1/column) inverse(a) diag(1/row), exactly when the factors are powers
+ * of two. Other factors lead to other pivots and other rounding, so what is bounded is the residual of the inverse with
+ * the factors taken out again; scaling rows and columns to a largest entry of 1 changes the condition by less than its
+ * own square. */
 static void test_badly_scaled(void **state) {
   (void)state;
   uint64_t seed = 2;

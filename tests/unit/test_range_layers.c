@@ -1,5 +1,5 @@
-/* Range pyramid and range stack over every layer of every tile, as techniques have them drawn: largest and smallest w of each neighbourhood, texel by texel.
- * test_maps.c looks at sizes and levels of single maps. */
+/* Range pyramid and range stack over every layer of every tile, as techniques have them drawn: largest and smallest w
+ * of each neighbourhood, texel by texel. test_maps.c looks at sizes and levels of single maps. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,8 +13,8 @@ static double w_at(const pni_maps *maps, int map, const float *depth, int x, int
   return d <= 0 || d >= 1 ? -1e30 : maps->block.map_depth[map][0] + maps->block.map_depth[map][1] * d;
 }
 
-/* Over texels from (x0, y0) up to, not including, (x1, y1); over quads each brings its right and upper neighbours. found: largest, smallest, and where
- * it is kept the smallest of what is there. */
+/* Over texels from (x0, y0) up to, not including, (x1, y1); over quads each brings its right and upper neighbours.
+ * found: largest, smallest, and where it is kept the smallest of what is there. */
 static void assert_range(const pni_maps *maps, int map, const float *depth, const int box[4], const float *found) {
   int more = maps->want.range.quads ? 1 : 0;
   double most = -1e30, least = 1e30, there = 1e30;
@@ -53,7 +53,8 @@ static void check_layer(const pni_maps *maps, int index) {
                          : gl_read_texture(range->id, level, index, w, h, channels);
     for (int i = 0; i < w * h; i++) {
       int x = i % w, y = i / w;
-      /* Fig. 7: the neighbourhood is centred, half of it before its texel; the border is clamped. A pyramid's blocks are padded with nothing. */
+      /* Fig. 7: the neighbourhood is centred, half of it before its texel; the border is clamped. A pyramid's blocks
+       * are padded with nothing. */
       const int around[4] = {at_least(x - size / 2, 0), at_least(y - size / 2, 0), at_most(x + size - size / 2, width),
                              at_most(y + size - size / 2, height)};
       const int block[4] = {x * size, y * size, at_most((x + 1) * size, range->width),

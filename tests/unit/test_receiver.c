@@ -1,4 +1,5 @@
-/* Surfaces from a host's depth: positions and tangent planes lie within the errors that the shaders declare for them. */
+/* Surfaces from a host's depth: positions and tangent planes lie within the errors that the shaders declare for
+ * them. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -134,8 +135,8 @@ static double facing_of(const view *v, int x, int y) {
   return fabs(dot(view_normal(v, x, y), unit(to_eye)));
 }
 
-/* What the host's own float arithmetic adds: a vertex moves sideways by four roundings of its distance from the eye, and a surface that the ray
- * meets at a slant turns that into distance along the ray. */
+/* What the host's own float arithmetic adds: a vertex moves sideways by four roundings of its distance from the eye,
+ * and a surface that the ray meets at a slant turns that into distance along the ray. */
 static double host_error(const view *v, int x, int y) {
   double facing = facing_of(v, x, y);
   return 4 * 0x1p-24 * (length(v->camera.eye) + 4.3) * sqrt(fmax(1 - facing * facing, 0)) / facing;
@@ -177,7 +178,8 @@ static tally check(const setup *t, const soup *scene, const pni_frame *frame) {
       float depth = v.depths[y * out.width + x];
       /* Exactly 0 or 1: on a clipping plane, where the surface's own depth is cut off. */
       if (!something || depth <= 0 || depth >= 1) continue;
-      /* Seen nearly from its side, a triangle is a sliver on the screen, and GL promises nothing about interpolation along it. */
+      /* Seen nearly from its side, a triangle is a sliver on the screen, and GL promises nothing about interpolation
+       * along it. */
       if (facing_of(&v, x, y) < 0.05) continue;
       check_pixel(&out, &v, frame, t->normals, x, y, &found);
     }

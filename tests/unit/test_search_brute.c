@@ -1,5 +1,5 @@
-/* Searches that merge nothing, against every texel of every map taken one by one on the CPU in double. What float rounding leaves open is counted on both
- * sides: GL's result must lie between what is surely hidden and what may be. */
+/* Searches that merge nothing, against every texel of every map taken one by one on the CPU in double. What float
+ * rounding leaves open is counted on both sides: GL's result must lie between what is surely hidden and what may be. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,7 +60,8 @@ typedef struct {
   double w_most, plane_least, plane_most; /* between which the library's own bounds on errors lie: open */
 } receiver;
 
-/* Positions come from a depth buffer of float over 8 units, so they are good to 2e-6; the library may take them to be worse, up to 1e-5. */
+/* Positions come from a depth buffer of float over 8 units, so they are good to 2e-6; the library may take them to be
+ * worse, up to 1e-5. */
 static receiver receiver_at(const atlas *a, const light_axes *l, vec p, vec n) {
   vec d = sub(p, l->origin);
   double z = dot(d, l->z), scale = l->sun ? 1 : 1 / z, map_error = a->block->range[2];
@@ -198,8 +199,8 @@ static double end_of(double corner, double middle, double share, const side *own
   return (middle + share * (corner - middle)) * (own->count ? own->inverse : other->inverse);
 }
 
-/* The rectangle of as many quarters of the cell as corners hide: columns are whole or not there, and where both are, a row
- * with one corner has half of its share. */
+/* The rectangle of as many quarters of the cell as corners hide: columns are whole or not there, and where both are, a
+ * row with one corner has half of its share. */
 static box quad_box(const receiver *r, const place q[4], const int hide[4], const double dw[4]) {
   static const int corners[2][2][2] = {{{0, 2}, {1, 3}}, {{0, 1}, {2, 3}}};
   box b;

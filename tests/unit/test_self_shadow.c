@@ -1,8 +1,9 @@
-/* No self-shadowing: a flat face of a convex solid, or a sheet, that casts and receives at once and faces the whole light is exactly 1,
- * whatever the light, the map, the camera's depth.
+/* No self-shadowing: a flat face of a convex solid, or a sheet, that casts and receives at once and faces the whole
+ * light is exactly 1, whatever the light, the map, the camera's depth.
  *
- * Pixels right at an edge of the face are counted but allowed: GL snaps vertices to 1/256 pixel, so such a pixel may show a point that lies
- * beyond the face; and where fewer than two pixels of a face lie along an axis, depth does not tell its plane. */
+ * Pixels right at an edge of the face are counted but allowed: GL snaps vertices to 1/256 pixel, so such a pixel may
+ * show a point that lies beyond the face; and where fewer than two pixels of a face lie along an axis, depth does not
+ * tell its plane. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,10 +19,10 @@ typedef struct {
 } configuration;
 
 static void describe(const configuration *c, char out[256]) {
-  snprintf(out, 256, "%s, %s tilted by %g, %s of half extents %g and %g at %g, map %d, %s%s, depth 0x%x%s", c->technique,
-           c->sheet ? "sheet" : "block", c->tilt, c->sun ? "sun" : "rectangle", c->size, c->size * c->aspect, c->distance, c->map,
-           c->orthographic ? "orthographic" : "perspective", c->normals ? " with normals" : "", c->depth_format,
-           c->reversed ? " reversed" : "");
+  snprintf(out, 256, "%s, %s tilted by %g, %s of half extents %g and %g at %g, map %d, %s%s, depth 0x%x%s",
+           c->technique, c->sheet ? "sheet" : "block", c->tilt, c->sun ? "sun" : "rectangle", c->size,
+           c->size * c->aspect, c->distance, c->map, c->orthographic ? "orthographic" : "perspective",
+           c->normals ? " with normals" : "", c->depth_format, c->reversed ? " reversed" : "");
 }
 
 /* The solid has one face whose normal is the tilt away from the direction to the light, turned about it at random. */
@@ -30,10 +31,8 @@ static void make_solid(const configuration *c, vec towards, uint64_t *seed, soup
   double angle = c->tilt * 0.017453292519943295;
   vec normal = add(mul(cos(angle), towards), mul(sin(angle), aside));
   vec a = unit(cross(normal, random_direction(seed))), b = cross(normal, a);
-  if (c->sheet)
-    soup_patch(out, v3(0, 0, 0), mul(0.5, a), mul(0.4, b));
-  else
-    soup_block(out, v3(0, 0, 0), mul(0.3, a), mul(0.4, b), mul(0.35, normal));
+  if (c->sheet) soup_patch(out, v3(0, 0, 0), mul(0.5, a), mul(0.4, b));
+  else soup_block(out, v3(0, 0, 0), mul(0.3, a), mul(0.4, b), mul(0.35, normal));
 }
 
 static vec towards_light(uint64_t *seed) {
@@ -44,16 +43,26 @@ static vec towards_light(uint64_t *seed) {
 
 static camera camera_near(const configuration *c, vec towards, uint64_t *seed) {
   vec from;
-  do
-    from = unit(add(mul(0.7, towards), random_direction(seed)));
+  do from = unit(add(mul(0.7, towards), random_direction(seed)));
   while (dot(from, towards) < 0.05);
-  camera k = {.width = 48, .height = 40, .eye = mul(random_in(seed, 1.2, 4), from), .target = v3(0, 0, 0), .up = v3(0.1, 1, 0.2),
-              .orthographic = c->orthographic, .near = 0.1, .far = 30, .reversed = c->reversed, .depth_format = c->depth_format};
+  camera k = {.width = 48,
+              .height = 40,
+              .eye = mul(random_in(seed, 1.2, 4), from),
+              .target = v3(0, 0, 0),
+              .up = v3(0.1, 1, 0.2),
+              .orthographic = c->orthographic,
+              .near = 0.1,
+              .far = 30,
+              .reversed = c->reversed,
+              .depth_format = c->depth_format};
   k.half_height = c->orthographic ? 0.6 : 0.6 / length(k.eye);
   return k;
 }
 
-typedef struct { int lit, dark, edge; float least; } count; /* edge: dark ones next to another surface, or to none */
+typedef struct {
+  int lit, dark, edge;
+  float least;
+} count; /* edge: dark ones next to another surface, or to none */
 
 static void count_pixels(const view *v, const float *visibility, const light_axes *light, count *out) {
   for (int y = 0; y < v->camera.height; y++)
@@ -84,8 +93,9 @@ static count look(const configuration *c, uint64_t *seed) {
   stage_open(&s);
   stage_cast(&s, &solid);
   stage_receive(&s, &v, c->normals);
-  pn_light_desc light = c->sun ? sun_along(mul(-1, towards), fmin(c->size, 1), fmin(c->size * c->aspect, 1), c->map)
-                               : light_at(mul(c->distance, towards), mul(-1, towards), c->size, c->size * c->aspect, c->map);
+  pn_light_desc light =
+      c->sun ? sun_along(mul(-1, towards), fmin(c->size, 1), fmin(c->size * c->aspect, 1), c->map)
+             : light_at(mul(c->distance, towards), mul(-1, towards), c->size, c->size * c->aspect, c->map);
   float *visibility = stage_visibility(&s, &light, c->technique);
   light_axes axes = axes_of(&light);
   count found = {0, 0, 0, 1};
@@ -102,10 +112,14 @@ static configuration pick(const char *technique, uint64_t *seed) {
   static const double distances[] = {1, 3, 30, 1000};
   static const int maps[] = {1, 2, 16, 100, 512, 2048};
 #define ANY(list) list[(int)random_in(seed, 0, (double)(sizeof(list) / sizeof *(list)))]
-  configuration c = {.technique = technique, .sheet = random_bits(seed) & 1, .sun = random_bits(seed) & 1,
-                     .normals = random_bits(seed) & 1, .orthographic = random_bits(seed) % 4 == 0};
+  configuration c = {.technique = technique,
+                     .sheet = random_bits(seed) & 1,
+                     .sun = random_bits(seed) & 1,
+                     .normals = random_bits(seed) & 1,
+                     .orthographic = random_bits(seed) % 4 == 0};
   c.depth_format = random_bits(seed) & 1 ? GL_DEPTH_COMPONENT24 : GL_DEPTH_COMPONENT32F;
-  c.reversed = c.depth_format == GL_DEPTH_COMPONENT32F && (random_bits(seed) & 1) && epoxy_has_gl_extension("GL_ARB_clip_control");
+  c.reversed = c.depth_format == GL_DEPTH_COMPONENT32F && (random_bits(seed) & 1) &&
+               epoxy_has_gl_extension("GL_ARB_clip_control");
   c.tilt = ANY(tilts);
   c.size = ANY(sizes);
   c.aspect = random_bits(seed) & 1 ? 1 : 0.2;
@@ -148,7 +162,8 @@ static void test_every_technique(void **state) {
   int failures = 0;
   for (int i = 0; i < pn_technique_count(); i++) {
     const char *name = pn_technique_at(i)->name;
-    if (pn_technique_at(i)->self_shadows) failures += failures_of(!strcmp(name, "average") ? "average:samples=4" : name);
+    if (pn_technique_at(i)->self_shadows)
+      failures += failures_of(!strcmp(name, "average") ? "average:samples=4" : name);
   }
   assert_int_equal(failures, 0);
 }

@@ -39,7 +39,8 @@ static void add_gathering(const char *shader, const char *own, int normals, int 
   add_key(screen, "search/visibility.glsl", shader, defines);
 }
 
-/* One set of a technique's defines: with every kind of receiver for the default one; the kinds do not look at the technique's defines. */
+/* One set of a technique's defines: with every kind of receiver for the default one; the kinds do not look at the
+ * technique's defines. */
 static void add_variant(const pni_technique_class *c, const char *own, bool full) {
   for (int i = 0; i < 40; i++) {
     int normals = i % 5, mask = i / 5 & 1, upsample = i / 10 & 1, debug = i / 20;

@@ -1,18 +1,17 @@
 /* Smoothies on scenes with a closed form: a square over a plane, a box that stands, a slanted edge; and bad meshes. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "stage.h"
+#include "over_ground.h"
 
-/* The light shines down from height L; u is x, v is -z. The square hangs at height h over the ground, y = 0. */
-static const double L = 4, h = 1.5, half_square = 0.6;
+/* The square hangs at height h. */
+static const double L = LIGHT_HEIGHT, h = 1.5, half_square = 0.6;
 
-static double clamp(double x, double low, double high) { return fmin(fmax(x, low), high); }
-
-static camera from_above(int size, double half_height) {
-  return (camera){.width = size, .height = size, .eye = v3(0.013, 10, 0.007), .target = v3(0.013, 0, 0.007), .up = v3(0, 0, -1),
-                  .orthographic = true, .half_height = half_height, .near = 1, .far = 20};
+/* The ground seen from above, without normals, under a square. */
+static void square_open(over_ground *c, int size, double half_height) {
+  *c = (over_ground){.from_depth = true};
+  soup_patch(&c->casters, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
+  over_ground_open(c, size, half_height);
 }
 
 /* ---- the square over the plane ---- */
@@ -29,11 +28,11 @@ typedef struct {
 static double hidden(const square_case *c, double x, double a) {
   double k = c->sun ? h : h / L, scale = c->sun ? 1 : 1 - h / L;
   double from = (-half_square - x * scale) / k, to = (half_square - x * scale) / k;
-  return (clamp(to, -a, a) - clamp(from, -a, a)) / (2 * a);
+  return (clamped(to, -a, a) - clamped(from, -a, a)) / (2 * a);
 }
 
 static pn_light_desc square_light(const square_case *c, int map) {
-  pn_light_desc light = c->sun ? sun_along(v3(0, -1, 0), c->a, c->b, map) : light_at(v3(0, L, 0), v3(0, -1, 0), c->a, c->b, map);
+  pn_light_desc light = c->sun ? sun_along(v3(0, -1, 0), c->a, c->b, map) : light_over_ground(c->a, c->b, map);
   light.fit = c->fit;
   return light;
 }
@@ -44,46 +43,37 @@ static double texel_of(const stage *s, bool sun) { /* on the ground */
   return fmax(info.s1 - info.s0, info.t1 - info.t0) / (info.width - 2) * (sun ? 1 : L);
 }
 
-/* Along x where all of the other axis is hidden: 2 V - 1 outside the hard shadow, within 0.01; 0 inside; 1 exactly where V is 1. A texel at each
- * end belongs to neither. */
+/* Along x where all of the other axis is hidden: 2 V - 1 outside the hard shadow, within 0.01; 0 inside; 1 exactly
+ * where V is 1. A texel at each end belongs to neither. */
 static void check_square(const square_case *c) {
   enum { SIZE = 160 };
-  soup ground = {0}, square = {0};
-  soup_patch(&ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
-  soup_patch(&square, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
-  view v;
-  stage s;
-  camera k = from_above(SIZE, 2);
-  view_draw(&v, &k, &ground);
-  stage_open(&s);
-  stage_cast(&s, &square);
-  stage_receive(&s, &v, false);
+  over_ground scene;
+  square_open(&scene, SIZE, 2);
   pn_light_desc light = square_light(c, 512);
-  float *visibility = stage_visibility(&s, &light, c->spec);
-  double texel = texel_of(&s, c->sun), worst = 0, scale = c->sun ? 1 : 1 - h / L;
+  float *visibility = stage_visibility(&scene.s, &light, c->spec);
+  double texel = texel_of(&scene.s, c->sun), worst = 0, scale = c->sun ? 1 : 1 - h / L;
   int inside = 0, between = 0, lit = 0;
   for (int i = 0; i < SIZE * SIZE; i++) {
-    vec p = view_point(&v, i % SIZE, i / SIZE);
+    vec p = view_point(&scene.v, i % SIZE, i / SIZE);
     double across[2] = {hidden(c, p.x, c->a), hidden(c, p.z, c->b)};
     double outside = fmax(fabs(p.x), fabs(p.z)) - half_square / scale;
     double V = 1 - across[0] * across[1];
     if (outside < -texel) inside += visibility[i] == 0, assert_true(visibility[i] == 0);
-    double reach[2] = {(half_square + c->a * (c->sun ? h : h / L)) / scale, (half_square + c->b * (c->sun ? h : h / L)) / scale};
-    if (fabs(p.x) > reach[0] + texel || fabs(p.z) > reach[1] + texel) lit += visibility[i] == 1, assert_true(visibility[i] == 1);
+    double reach[2] = {(half_square + c->a * (c->sun ? h : h / L)) / scale,
+                       (half_square + c->b * (c->sun ? h : h / L)) / scale};
+    if (fabs(p.x) > reach[0] + texel || fabs(p.z) > reach[1] + texel)
+      lit += visibility[i] == 1, assert_true(visibility[i] == 1);
     if (outside < texel || (across[0] < 1 && across[1] < 1)) continue;
     if (fabs(fabs(p.x) - reach[0]) < texel || fabs(fabs(p.z) - reach[1]) < texel) continue;
     worst = fmax(worst, fabs(visibility[i] - (2 * V - 1)));
     between += V < 1;
   }
-  print_message("%s, %s of %g x %g, fit %d: off by %.4f, %d pixels in the penumbra\n", c->spec, c->sun ? "sun" : "rectangle", c->a, c->b, (int)c->fit,
-                worst, between);
+  print_message("%s, %s of %g x %g, fit %d: off by %.4f, %d pixels in the penumbra\n", c->spec,
+                c->sun ? "sun" : "rectangle", c->a, c->b, (int)c->fit, worst, between);
   assert_true(inside > 300 && between > 100 && lit > 300);
   assert_true(worst <= 0.01);
   free(visibility);
-  stage_close(&s);
-  view_free(&v);
-  soup_free(&ground);
-  soup_free(&square);
+  over_ground_close(&scene);
 }
 
 static void test_square(void **state) {
@@ -97,33 +87,26 @@ static void test_square(void **state) {
       }
 }
 
-/* A width in map units, as in the notes: alpha / (1 - b / r), alpha the distance in the map over the width; under a sun b and r count from the
- * nearest caster's plane. */
+/* A width in map units, as in the notes: alpha / (1 - b / r), alpha the distance in the map over the width; under a sun
+ * b and r count from the nearest caster's plane. */
 static void test_width(void **state) {
   (void)state;
   enum { SIZE = 96 };
   const double width = 0.1;
   for (int sun = 0; sun < 2; sun++) {
     square_case c = {sun, 0.3, 0.3, PN_FIT_VISIBLE, "smoothies:width=0.1,geometry=edges"};
-    soup ground = {0}, square = {0};
-    soup_patch(&ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
-    soup_patch(&square, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
-    view v;
-    stage s;
-    camera k = from_above(SIZE, 1.5);
-    view_draw(&v, &k, &ground);
-    stage_open(&s);
-    stage_cast(&s, &square);
-    stage_receive(&s, &v, false);
+    over_ground scene;
+    square_open(&scene, SIZE, 1.5);
     pn_light_desc light = square_light(&c, 512);
-    float *visibility = stage_visibility(&s, &light, c.spec);
+    float *visibility = stage_visibility(&scene.s, &light, c.spec);
     pn_maps_info info;
-    assert_ok(pn_light_maps(s.light, &info));
+    assert_ok(pn_light_maps(scene.s.light, &info));
     double texel = (info.s1 - info.s0) / (info.width - 2), worst = 0;
-    double w_b = sun ? h - 0.0 : 1 / (L - h), w_r = sun ? 0 : 1 / L; /* a sun's w = height, its origin that of the scene */
+    /* A sun's w = height, its origin that of the scene. */
+    double w_b = sun ? h - 0.0 : 1 / (L - h), w_r = sun ? 0 : 1 / L;
     int between = 0;
     for (int i = 0; i < SIZE * SIZE; i++) {
-      vec p = view_point(&v, i % SIZE, i / SIZE);
+      vec p = view_point(&scene.v, i % SIZE, i / SIZE);
       if (fabs(p.z) > 0.4) continue;
       double d = fabs(p.x) * (sun ? 1 : w_r) - half_square * (sun ? 1 : w_b);
       double remapped = sun ? d / width * (info.w_near - w_r) / (w_b - w_r) : d / width / (1 - w_r / w_b);
@@ -135,16 +118,14 @@ static void test_width(void **state) {
     assert_true(between > 50);
     assert_true(worst <= 0.01);
     free(visibility);
-    stage_close(&s);
-    view_free(&v);
-    soup_free(&ground);
-    soup_free(&square);
+    over_ground_close(&scene);
   }
 }
 
 /* ---- contact ---- */
 
-/* Whether a vertical line from the ground at p up to the light's centre passes the box [-e, e] x [0, top] x [-e, e], moved in by margin. */
+/* Whether a vertical line from the ground at p up to the light's centre passes the box [-e, e] x [0, top] x [-e, e],
+ * moved in by margin. */
 static bool box_hides(vec p, vec light, double e, double top, double margin) {
   double low = 0, high = 1;
   const double from[3] = {p.x, p.y, p.z}, to[3] = {light.x, light.y, light.z};
@@ -157,7 +138,8 @@ static bool box_hides(vec p, vec light, double e, double top, double margin) {
   return low < high && low * length(sub(light, p)) > 1e-6;
 }
 
-/* A box that stands on the ground: the shadow of the light's centre is dark right up to it, whatever the light's size. */
+/* A box that stands on the ground: the shadow of the light's centre is dark right up to it, whatever the light's
+ * size. */
 static void test_contact(void **state) {
   (void)state;
   enum { SIZE = 128 };
@@ -168,7 +150,14 @@ static void test_contact(void **state) {
   soup_box(&box, v3(-e, 0, -e), v3(e, top, e));
   int box_triangles = surfaces.count;
   soup_patch(&surfaces, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
-  camera k = {.width = SIZE, .height = SIZE, .eye = v3(5, 6, 3), .target = v3(1, 0, 0.3), .up = v3(0, 1, 0), .half_height = 0.25, .near = 1, .far = 30};
+  camera k = {.width = SIZE,
+              .height = SIZE,
+              .eye = v3(5, 6, 3),
+              .target = v3(1, 0, 0.3),
+              .up = v3(0, 1, 0),
+              .half_height = 0.25,
+              .near = 1,
+              .far = 30};
   view v;
   view_draw(&v, &k, &surfaces);
   vec centre = v3(-2.1, 3, 0.4);
@@ -202,27 +191,28 @@ static void test_contact(void **state) {
 
 /* ---- a slanted edge ---- */
 
-/* Where the light that is seen along a line across the edge would begin, if it began at once, in texels; its standard deviation over many
- * lines. The camera looks straight down with the edge as its vertical. */
+/* Where the light that is seen along a line across the edge would begin, if it began at once, in texels; its standard
+ * deviation over many lines. The camera looks straight down with the edge as its vertical. */
 static double deviation(const char *spec, double *width) {
   enum { ACROSS = 400, ALONG = 160 };
   const double angle = 0.23;
-  soup ground = {0}, plate = {0};
+  over_ground scene = {.from_depth = true};
   vec x = v3(cos(angle), 0, -sin(angle)), z = v3(sin(angle), 0, cos(angle));
-  soup_patch(&ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
-  soup_patch(&plate, v3(0, h, 0), mul(half_square, x), mul(half_square, z));
+  soup_patch(&scene.casters, v3(0, h, 0), mul(half_square, x), mul(half_square, z));
   vec middle = mul(half_square / (1 - h / L), x);
-  camera k = {.width = ACROSS, .height = ALONG, .eye = add(middle, v3(0, 10, 0)), .target = middle, .up = mul(-1, z), .orthographic = true,
-              .half_height = 0.2, .near = 1, .far = 20};
-  view v;
-  stage s;
-  view_draw(&v, &k, &ground);
-  stage_open(&s);
-  stage_cast(&s, &plate);
-  stage_receive(&s, &v, false);
-  pn_light_desc light = light_at(v3(0, L, 0), v3(0, -1, 0), 0.25, 0.25, 256);
-  float *visibility = stage_visibility(&s, &light, spec);
-  double texel = texel_of(&s, false), pixel = 2 * k.half_height / ALONG, sum = 0, squares = 0;
+  camera k = {.width = ACROSS,
+              .height = ALONG,
+              .eye = add(middle, v3(0, 10, 0)),
+              .target = middle,
+              .up = mul(-1, z),
+              .orthographic = true,
+              .half_height = 0.2,
+              .near = 1,
+              .far = 20};
+  over_ground_see(&scene, &k);
+  pn_light_desc light = light_over_ground(0.25, 0.25, 256);
+  float *visibility = stage_visibility(&scene.s, &light, spec);
+  double texel = texel_of(&scene.s, false), pixel = 2 * k.half_height / ALONG, sum = 0, squares = 0;
   for (int y = 0; y < ALONG; y++) {
     double dark = 0;
     for (int i = 0; i < ACROSS; i++) dark += (1 - visibility[y * ACROSS + i]) * pixel / texel;
@@ -231,10 +221,7 @@ static double deviation(const char *spec, double *width) {
   }
   *width = sum / ALONG;
   free(visibility);
-  stage_close(&s);
-  view_free(&v);
-  soup_free(&ground);
-  soup_free(&plate);
+  over_ground_close(&scene);
   return sqrt(fmax(squares / ALONG - sum / ALONG * (sum / ALONG), 0));
 }
 
@@ -259,13 +246,13 @@ static void check_mesh(const char *name, const soup *casters, bool told) {
   soup_patch(&ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
   view v;
   stage s;
-  camera k = from_above(SIZE, 3);
+  camera k = camera_over_ground(SIZE, 3);
   view_draw(&v, &k, &ground);
   for (int geometry = 0; geometry < 2; geometry++) {
     stage_open(&s);
     stage_cast(&s, casters);
     stage_receive(&s, &v, false);
-    pn_light_desc light = light_at(v3(0, L, 0), v3(0, -1, 0), 0.4, 0.4, 128);
+    pn_light_desc light = light_over_ground(0.4, 0.4, 128);
     light.fit = PN_FIT_VISIBLE;
     int dark = 0, soft = 0;
     for (int frame = 0; frame < 2; frame++) {
@@ -318,27 +305,16 @@ static void draw_nothing(void *user, const pn_caster_pass *pass) {
 static void test_callbacks(void **state) {
   (void)state;
   enum { SIZE = 32 };
-  soup ground = {0}, square = {0};
-  soup_patch(&ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
-  soup_patch(&square, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
-  view v;
-  stage s;
+  over_ground scene;
   int calls = 0;
   const float bounds[6] = {-1, 0.5f, -1, 1, 1, 1};
-  camera k = from_above(SIZE, 2);
-  view_draw(&v, &k, &ground);
-  stage_open(&s);
-  stage_cast(&s, &square);
-  stage_receive(&s, &v, false);
-  assert_ok(pn_casters_draw(s.casters, 3, draw_nothing, &calls, bounds));
-  pn_light_desc light = light_at(v3(0, L, 0), v3(0, -1, 0), 0.4, 0.4, 128);
-  for (int frame = 0; frame < 3; frame++) free(stage_visibility(&s, &light, "smoothies"));
+  square_open(&scene, SIZE, 2);
+  assert_ok(pn_casters_draw(scene.s.casters, 3, draw_nothing, &calls, bounds));
+  pn_light_desc light = light_over_ground(0.4, 0.4, 128);
+  for (int frame = 0; frame < 3; frame++) free(stage_visibility(&scene.s, &light, "smoothies"));
   assert_int_equal(calls, 3);
-  assert_int_equal(s.messages[PN_MESSAGE_CASTER_MESHES], 1);
-  stage_close(&s);
-  view_free(&v);
-  soup_free(&ground);
-  soup_free(&square);
+  assert_int_equal(scene.s.messages[PN_MESSAGE_CASTER_MESHES], 1);
+  over_ground_close(&scene);
 }
 
 int main(void) {

@@ -81,12 +81,14 @@ static void test_parallel_up(void **state) {
   (void)state;
   const float down[3] = {0, -2, 0}, up[3] = {0, 1, 0}, back[3] = {0, 0, -3}, forth[3] = {0, 0, 1},
               nothing[3] = {0, 0, 0};
-  /* Down: up becomes (0, 0, -1); u = (0, -1, 0) x (0, 0, -1) = (1, 0, 0), v = u x z = (1, 0, 0) x (0, -1, 0) = (0, 0, -1). */
+  /* Down: up becomes (0, 0, -1); u = (0, -1, 0) x (0, 0, -1) = (1, 0, 0),
+   * v = u x z = (1, 0, 0) x (0, -1, 0) = (0, 0, -1). */
   assert_frame(down, up, v3(1, 0, 0), v3(0, 0, -1));
   assert_frame(up, down, v3(-1, 0, 0), v3(0, 0, -1));
   assert_frame(down, nothing, v3(1, 0, 0), v3(0, 0, -1));
   assert_frame(down, NULL, v3(1, 0, 0), v3(0, 0, -1));
-  /* Along (0, 0, -1) with an up parallel to it: up becomes (1, 0, 0); u = (0, 0, -1) x (1, 0, 0) = (0, -1, 0), v = (1, 0, 0). */
+  /* Along (0, 0, -1) with an up parallel to it: up becomes (1, 0, 0); u = (0, 0, -1) x (1, 0, 0) = (0, -1, 0),
+   * v = (1, 0, 0). */
   assert_frame(back, forth, v3(0, -1, 0), v3(1, 0, 0));
   const float bad_up[3] = {NAN, 0, 0};
   assert_frame(down, bad_up, v3(1, 0, 0), v3(0, 0, -1));
@@ -149,7 +151,8 @@ static void test_map_point(void **state) {
   }
 }
 
-/* Where the line from R through Q meets the light's plane, by intersecting it there; for a sun, the direction's tangents. */
+/* Where the line from R through Q meets the light's plane, by intersecting it there; for a sun, the direction's
+ * tangents. */
 static void test_back_projection(void **state) {
   (void)state;
   uint64_t seed = 4;
@@ -222,7 +225,8 @@ static void test_horizon(void **state) {
 
 /* ---- windows ---- */
 
-/* A sample at the window's edge hides exactly the light's edge; one micropatch darkens exactly the receivers in its penumbra extent. */
+/* A sample at the window's edge hides exactly the light's edge; one micropatch darkens exactly the receivers in its
+ * penumbra extent. */
 static void test_windows(void **state) {
   (void)state;
   uint64_t seed = 7;
@@ -255,8 +259,8 @@ static void test_depth(void **state) {
   }
 }
 
-/* A point of the light's frame lands where the light's point (a, b), taken for the eye, sees it: rectangle (x - a) / z; sun: x carried
- * along (a, b, -1) to z = 0, x + a z. Depth is affine in w from -1 at w_near to 1 at w_far. */
+/* A point of the light's frame lands where the light's point (a, b), taken for the eye, sees it: rectangle (x - a) / z;
+ * sun: x carried along (a, b, -1) to z = 0, x + a z. Depth is affine in w from -1 at w_near to 1 at w_far. */
 static void test_clip(void **state) {
   (void)state;
   uint64_t seed = 9;

@@ -1,5 +1,5 @@
-/* Soft shadow maps: lists of micropatches from GPU and CPU, a plate's closed form, sums in 16 bits, the error's bound, and
- * scenes that ask for trouble. */
+/* Soft shadow maps: lists of micropatches from GPU and CPU, a plate's closed form, sums in 16 bits, the error's bound,
+ * and scenes that ask for trouble. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -91,9 +91,10 @@ static double texel_on_light(const pn_maps_info *info) {
          plate_h;
 }
 
-/* The largest difference from the closed form, and what texels allow: each of two edges an axis moves by half an occluder texel and
- * the raster's snapping; the soft shadow map is looked up bilinearly, which cuts the corners of the ramps by a quarter of its texels. A product
- * of two shares, each at most 1, is off by at most the sum of what they are off. */
+/* The largest difference from the closed form, and what texels allow: each of two edges an axis moves by half an
+ * occluder texel and the raster's snapping; the soft shadow map is looked up bilinearly, which cuts the corners of the
+ * ramps by a quarter of its texels. A product of two shares, each at most 1, is off by at most the sum of what they are
+ * off. */
 static double check_plate(const char *spec, bool sum_in_16_bits, double *allowed) {
   scene c = {0};
   add_plate(&c);
@@ -191,8 +192,8 @@ static float *bound_of(scene *c, const char *spec, float **visibility) {
   return NULL;
 }
 
-/* Eq. 3 bounds what neighbours at different depths overlap or leave open: nothing on a plate parallel to the light; on two plates
- * at different heights, side by side, it holds the error that their edge makes, beside what texels allow. */
+/* Eq. 3 bounds what neighbours at different depths overlap or leave open: nothing on a plate parallel to the light; on
+ * two plates at different heights, side by side, it holds the error that their edge makes, beside what texels allow. */
 static void bound_holds_overlaps(void **state) {
   (void)state;
   scene flat = {0}, step = {0};

@@ -1,58 +1,32 @@
-/* Techniques on scenes with a closed form: a square parallel to the light, over a plane, and what every technique must do alike. */
+/* Techniques on scenes with a closed form: a square parallel to the light, over a plane, and what every technique must
+ * do alike. */
 #include <stdlib.h>
 #include <string.h>
 
-#include "stage.h"
+#include "over_ground.h"
 
-/* The light shines down from height L; u is x, v is -z. The square hangs at height h. The ground, y = 0, only receives. */
-static const double L = 4, h = 1.5, half_square = 0.6, half_u = 0.5, half_v = 0.3;
+/* The square hangs at height h. */
+static const double L = LIGHT_HEIGHT, h = 1.5, half_square = 0.6, half_u = 0.5, half_v = 0.3;
 
 enum { SIZE = 48 };
 
-typedef struct {
-  stage s;
-  view v;
-  soup ground, square;
-} scene;
+typedef over_ground scene;
 
-static camera from_above(double half_height) {
-  return (camera){.width = SIZE, .height = SIZE, .eye = v3(0.013, 10, 0.007), .target = v3(0.013, 0, 0.007), .up = v3(0, 0, -1),
-                  .orthographic = true, .half_height = half_height, .near = 1, .far = 20};
-}
+static void add_square(scene *c) { soup_patch(&c->casters, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square)); }
 
 static void scene_open(scene *c) {
-  memset(c, 0, sizeof *c);
-  soup_patch(&c->ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
-  soup_patch(&c->square, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
-  camera k = from_above(2.2);
-  view_draw(&c->v, &k, &c->ground);
-  stage_open(&c->s);
-  stage_cast(&c->s, &c->square);
-  stage_receive(&c->s, &c->v, false);
+  *c = (scene){.from_depth = true};
+  add_square(c);
+  over_ground_open(c, SIZE, 2.2);
 }
 
-static void scene_close(scene *c) {
-  stage_close(&c->s);
-  view_free(&c->v);
-  soup_free(&c->ground);
-  soup_free(&c->square);
-}
-
-static pn_light_desc light_above(int map) { return light_at(v3(0, L, 0), v3(0, -1, 0), half_u, half_v, map); }
+static pn_light_desc light_above(int map) { return light_over_ground(half_u, half_v, map); }
 
 /* One texel of the last map, at the height of the square. */
 static double texel_at_square(const stage *s) {
   pn_maps_info info;
   assert_ok(pn_light_maps(s->light, &info));
   return (info.s1 - info.s0) / (info.width - 2) * (L - h);
-}
-
-static double clamp(double x, double low, double high) { return fmin(fmax(x, low), high); }
-
-/* Share of the light's interval [low, high] that the square hides from x: a point a of the light is seen through x + (a - x) h / L. */
-static double hidden(double x, double low, double high, double square) {
-  double k = h / L, from = (-square - x * (1 - k)) / k, to = (square - x * (1 - k)) / k;
-  return (clamp(to, low, high) - clamp(from, low, high)) / (high - low);
 }
 
 /* ---- hard and filtered ---- */
@@ -76,7 +50,7 @@ static void test_hard(void **state) {
   }
   assert_true(dark > 100 && lit > 100);
   free(visibility);
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
 /* A given map twice as wide as the square, 32 texels: the square fills texels 8 to 24 exactly. */
@@ -95,7 +69,8 @@ static double texel_of(double x) { return map_size / 2 + x * (1 - h / L) / 1.2 *
 
 /* Share of a box of n texels around x that lies in the square. */
 static double box_share(double x, int n) {
-  return (clamp(x + 0.5 * n, map_edge, map_size - map_edge) - clamp(x - 0.5 * n, map_edge, map_size - map_edge)) / n;
+  return (clamped(x + 0.5 * n, map_edge, map_size - map_edge) - clamped(x - 0.5 * n, map_edge, map_size - map_edge)) /
+         n;
 }
 
 /* Integer translates of the cubic B-spline of width 4, over the centres of the square's texels. */
@@ -109,7 +84,8 @@ static double spline_share(double x, int n) {
   return sum;
 }
 
-/* Positions in texels are good to 32 texels times some float roundings, taken here as 16; the profile's slope is at most 1 a texel. */
+/* Positions in texels are good to 32 texels times some float roundings, taken here as 16; the profile's slope is at
+ * most 1 a texel. */
 static void check_profile(const char *spec, double (*share)(double, int), int n) {
   scene c;
   scene_open(&c);
@@ -119,12 +95,13 @@ static void check_profile(const char *spec, double (*share)(double, int), int n)
   for (int i = 0; i < SIZE * SIZE; i++) {
     vec p = view_point(&c.v, i % SIZE, i / SIZE);
     double want = 1 - share(texel_of(p.x), n) * share(texel_of(p.z), n);
-    if (!(fabs(visibility[i] - want) <= 32 * 16 * 0x1p-24 + 1e-6)) fail_msg("%s: %g, not %g, at %g, %g", spec, visibility[i], want, p.x, p.z);
+    if (!(fabs(visibility[i] - want) <= 32 * 16 * 0x1p-24 + 1e-6))
+      fail_msg("%s: %g, not %g, at %g, %g", spec, visibility[i], want, p.x, p.z);
     between += want > 0.01 && want < 0.99;
   }
   assert_true(n == 1 || between > 100);
   free(visibility);
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
 static void test_pcf(void **state) {
@@ -137,7 +114,8 @@ static void test_pcf(void **state) {
 
 /* ---- the product formula ---- */
 
-/* bound: error of the light's sampling along both axes together; the map moves each edge by so many texels, seen as part of the light. */
+/* bound: error of the light's sampling along both axes together; the map moves each edge by so many texels, seen as
+ * part of the light. */
 static void check_product(const char *spec, int map, double bound, double texels) {
   scene c;
   scene_open(&c);
@@ -148,7 +126,7 @@ static void check_product(const char *spec, int map, double bound, double texels
   int penumbra = 0;
   for (int i = 0; i < SIZE * SIZE; i++) {
     vec p = view_point(&c.v, i % SIZE, i / SIZE);
-    double want = 1 - hidden(p.x, -half_u, half_u, half_square) * hidden(p.z, -half_v, half_v, half_square);
+    double want = 1 - hidden_by_plate(p.x, half_u, half_square, h) * hidden_by_plate(p.z, half_v, half_square, h);
     worst = fmax(worst, fabs(visibility[i] - want));
     penumbra += want > 0 && want < 1;
   }
@@ -156,28 +134,29 @@ static void check_product(const char *spec, int map, double bound, double texels
   assert_true(penumbra > 300);
   assert_true(worst <= allowed);
   free(visibility);
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
-/* 1024 points of a (0, 10, 2)-net: a box at a corner of the light is off by at most m / 2 + 3 / 2 points (Niederreiter's bound for base 2),
- * two more since the points were moved within their strata. The square is wider than the light looks, so no other boxes occur.
- * A texel is in or out by its centre: half a texel, and the raster's snapping. */
+/* 1024 points of a (0, 10, 2)-net: a box at a corner of the light is off by at most m / 2 + 3 / 2 points
+ * (Niederreiter's bound for base 2), two more since the points were moved within their strata. The square is wider than
+ * the light looks, so no other boxes occur. A texel is in or out by its centre: half a texel, and the raster's
+ * snapping. */
 static void test_average(void **state) {
   (void)state;
   check_product("average", 256, (5 + 1.5 + 2) / 1024, 0.51);
   check_product("average:samples=256", 128, (4 + 1.5 + 2) / 256, 0.51);
 }
 
-/* N x N samples: an edge is off by at most one row of them; bilinear filtering smears it by a texel more, and the blockers' search may do so
- * at the other end. */
+/* N x N samples: an edge is off by at most one row of them; bilinear filtering smears it by a texel more, and the
+ * blockers' search may do so at the other end. */
 static void test_sampled(void **state) {
   (void)state;
   check_product("pcss:samples=32", 512, 2.0 / 32, 2);
   check_product("pcss", 512, 2.0 / 8, 2);
 }
 
-/* A 16 x 16 field has its edges at rows of samples, jittered by a quarter of a row; 8, 32 likewise. Back-projection adds up areas and has no
- * samples at all, only texels, of which it may count each edge's twice. */
+/* A 16 x 16 field has its edges at rows of samples, jittered by a quarter of a row; 8, 32 likewise. Back-projection
+ * adds up areas and has no samples at all, only texels, of which it may count each edge's twice. */
 static void test_fields(void **state) {
   (void)state;
   check_product("bitmask:merge=0", 256, 2.0 / 16, 2);
@@ -193,22 +172,31 @@ static const char *spec_at(int i) {
   return strcmp(name, "average") ? name : "average:samples=64";
 }
 
-/* Visibility is the unblocked share of what lies above the horizon. A wall at x = 0 faces +x, so it sees half the light; the square, from
- * x = 0.05 to 0.25, hides a part of that half. */
+/* Visibility is the unblocked share of what lies above the horizon. A wall at x = 0 faces +x, so it sees half the
+ * light; the square, from x = 0.05 to 0.25, hides a part of that half. */
 static void test_horizon(void **state) {
   (void)state;
-  static const struct { const char *spec; double bound; } cases[] = {
-      {"average", 2 * 8.5 / 1024}, {"pcss:samples=32", 2 * 2.0 / 32}, {"bitmask:samples=32,merge=0", 2 * 2.0 / 32}, {"backprojection:merge=0", 0}};
+  static const struct {
+    const char *spec;
+    double bound;
+  } cases[] = {{"average", 2 * 8.5 / 1024},
+               {"pcss:samples=32", 2 * 2.0 / 32},
+               {"bitmask:samples=32,merge=0", 2 * 2.0 / 32},
+               {"backprojection:merge=0", 0}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     scene c = {0};
     soup_patch(&c.ground, v3(0, 0.5, 0), v3(0, 0, 2), v3(0, 0.5, 0));
-    soup_patch(&c.square, v3(0.15, h, 0), v3(0.1, 0, 0), v3(0, 0, 0.1));
-    camera from_side = {.width = SIZE, .height = SIZE, .eye = v3(5, 0.5, 0), .target = v3(0, 0.5, 0), .up = v3(0, 1, 0), .orthographic = true,
-                        .half_height = 0.45, .near = 1, .far = 10};
-    view_draw(&c.v, &from_side, &c.ground);
-    stage_open(&c.s);
-    stage_cast(&c.s, &c.square);
-    stage_receive(&c.s, &c.v, true);
+    soup_patch(&c.casters, v3(0.15, h, 0), v3(0.1, 0, 0), v3(0, 0, 0.1));
+    camera from_side = {.width = SIZE,
+                        .height = SIZE,
+                        .eye = v3(5, 0.5, 0),
+                        .target = v3(0, 0.5, 0),
+                        .up = v3(0, 1, 0),
+                        .orthographic = true,
+                        .half_height = 0.45,
+                        .near = 1,
+                        .far = 10};
+    over_ground_see(&c, &from_side);
     pn_light_desc light = light_above(256);
     float *visibility = stage_visibility(&c.s, &light, cases[k].spec);
     double worst = 0;
@@ -219,9 +207,9 @@ static void test_horizon(void **state) {
     for (int i = 0; i < SIZE * SIZE; i++) {
       vec p = view_point(&c.v, i % SIZE, i / SIZE);
       double part = (h - p.y) / (L - p.y); /* along the way from p to the light */
-      double low = clamp(0.05 / part, 0, half_u), high = clamp(0.25 / part, 0, half_u);
+      double low = clamped(0.05 / part, 0, half_u), high = clamped(0.25 / part, 0, half_u);
       double from = (-0.1 - p.z * (1 - part)) / part, to = (0.1 - p.z * (1 - part)) / part;
-      double v = (clamp(to, -half_v, half_v) - clamp(from, -half_v, half_v)) / (2 * half_v);
+      double v = (clamped(to, -half_v, half_v) - clamped(from, -half_v, half_v)) / (2 * half_v);
       double want = 1 - (high - low) / half_u * v;
       allowed = fmax(allowed, cases[k].bound + 2 * texel / part / half_u + 2 * texel / part / (2 * half_v));
       worst = fmax(worst, fabs(visibility[i] - want));
@@ -231,7 +219,7 @@ static void test_horizon(void **state) {
     assert_true(penumbra > 300);
     assert_true(worst <= allowed);
     free(visibility);
-    scene_close(&c);
+    over_ground_close(&c);
   }
 }
 
@@ -241,13 +229,19 @@ static void test_behind_and_away(void **state) {
   for (int i = 0; i < pn_technique_count(); i++) {
     scene c = {0};
     soup_patch(&c.ground, v3(0, L + 1, 0), v3(3, 0, 0), v3(0, 0, 3));
-    soup_patch(&c.square, v3(0, L + 0.5, 0), v3(half_square, 0, 0), v3(0, 0, half_square)); /* between the light and the slab */
-    soup_patch(&c.square, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
-    camera below = {.width = SIZE, .height = SIZE, .eye = v3(0, -5, 0), .target = v3(0, 0, 0), .up = v3(0, 0, 1), .orthographic = true,
-                    .half_height = 2, .near = 1, .far = 20};
-    view_draw(&c.v, &below, &c.ground);
-    stage_open(&c.s);
-    stage_cast(&c.s, &c.square);
+    /* Between the light and the slab. */
+    soup_patch(&c.casters, v3(0, L + 0.5, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
+    add_square(&c);
+    camera below = {.width = SIZE,
+                    .height = SIZE,
+                    .eye = v3(0, -5, 0),
+                    .target = v3(0, 0, 0),
+                    .up = v3(0, 0, 1),
+                    .orthographic = true,
+                    .half_height = 2,
+                    .near = 1,
+                    .far = 20};
+    over_ground_see(&c, &below);
     pn_light_desc light = light_above(64);
     for (int normals = 0; normals < 2; normals++) {
       stage_receive(&c.s, &c.v, normals);
@@ -268,20 +262,18 @@ static void test_behind_and_away(void **state) {
     }
     soup_free(&ground);
     view_free(&under);
-    scene_close(&c);
+    over_ground_close(&c);
   }
 }
 
-/* A ground that fills part of the picture; a mask over half of it. Where nothing is or nothing receives: 1. Elsewhere the mask changes no bit. */
+/* A ground that fills part of the picture; a mask over half of it. Where nothing is or nothing receives: 1. Elsewhere
+ * the mask changes no bit. */
 static void test_background_and_mask(void **state) {
   (void)state;
   scene c = {0};
   soup_patch(&c.ground, v3(0, 0, 0), v3(1, 0, 0), v3(0, 0, 1));
-  soup_patch(&c.square, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
-  camera k = from_above(1.5);
-  view_draw(&c.v, &k, &c.ground);
-  stage_open(&c.s);
-  stage_cast(&c.s, &c.square);
+  add_square(&c);
+  over_ground_open(&c, SIZE, 1.5);
   unsigned char mask[SIZE * SIZE];
   for (int i = 0; i < SIZE * SIZE; i++) mask[i] = (i % SIZE + i / SIZE / 3) % 4 < 2 ? 0 : 255;
   GLuint texture;
@@ -309,7 +301,7 @@ static void test_background_and_mask(void **state) {
     free(masked);
   }
   glDeleteTextures(1, &texture);
-  scene_close(&c);
+  over_ground_close(&c);
 }
 
 /* A caster that moves while the snapped bounds stay: shadows of the others do not change by a bit. */
@@ -317,22 +309,18 @@ static void test_still_shadow(void **state) {
   (void)state;
   for (int sun = 0; sun < 2; sun++)
     for (int i = 0; i < pn_technique_count(); i++) {
-      scene c = {0};
+      scene c = {.from_depth = true};
       soup mover = {0};
-      soup_patch(&c.ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
-      soup_patch(&c.square, v3(-1, h, 0), v3(0.4, 0, 0.1), v3(0, 0.1, 0.5)); /* its shadow is looked at */
-      soup_patch(&c.square, v3(3, h, 0), v3(1.5, 0, 0), v3(0, 0.4, 2.5));    /* holds the bounds */
+      soup_patch(&c.casters, v3(-1, h, 0), v3(0.4, 0, 0.1), v3(0, 0.1, 0.5)); /* its shadow is looked at */
+      soup_patch(&c.casters, v3(3, h, 0), v3(1.5, 0, 0), v3(0, 0.4, 2.5));    /* holds the bounds */
       soup_block(&mover, v3(0, 0, 0), v3(0.2, 0, 0), v3(0, 0.1, 0), v3(0, 0, 0.2));
-      camera k = from_above(1.2);
+      camera k = camera_over_ground(SIZE, 1.2);
       k.eye.x = k.target.x = -1.2;
-      view_draw(&c.v, &k, &c.ground);
-      stage_open(&c.s);
-      stage_cast(&c.s, &c.square);
-      stage_receive(&c.s, &c.v, false);
+      over_ground_see(&c, &k);
       pn_instance instance;
       float place[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, (float)h, 0, 1};
       assert_ok(pn_instance_add(c.s.casters, stage_mesh(&c.s, &mover), place, 0, &instance));
-      pn_light_desc light = sun ? sun_along(v3(0.1, -1, 0), 0.1, 0.1, 128) : light_at(v3(0, L, 0), v3(0, -1, 0), 0.2, 0.2, 128);
+      pn_light_desc light = sun ? sun_along(v3(0.1, -1, 0), 0.1, 0.1, 128) : light_over_ground(0.2, 0.2, 128);
       float *before = stage_visibility(&c.s, &light, spec_at(i));
       pn_maps_info first, then;
       assert_ok(pn_light_maps(c.s.light, &first));
@@ -355,15 +343,21 @@ static void test_still_shadow(void **state) {
       assert_true(dark > 100);
       free(before);
       soup_free(&mover);
-      scene_close(&c);
+      over_ground_close(&c);
     }
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_hard),    cmocka_unit_test(test_pcf),     cmocka_unit_test(test_average),
-      cmocka_unit_test(test_sampled), cmocka_unit_test(test_fields),  cmocka_unit_test(test_horizon),
-      cmocka_unit_test(test_behind_and_away), cmocka_unit_test(test_background_and_mask), cmocka_unit_test(test_still_shadow),
+      cmocka_unit_test(test_hard),
+      cmocka_unit_test(test_pcf),
+      cmocka_unit_test(test_average),
+      cmocka_unit_test(test_sampled),
+      cmocka_unit_test(test_fields),
+      cmocka_unit_test(test_horizon),
+      cmocka_unit_test(test_behind_and_away),
+      cmocka_unit_test(test_background_and_mask),
+      cmocka_unit_test(test_still_shadow),
   };
   return GL_RUN("techniques", tests);
 }

@@ -1,0 +1,1 @@
+message(FATAL_ERROR "penumbra included the host's install.cmake")
