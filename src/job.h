@@ -39,7 +39,7 @@ typedef struct {
 } pni_job;
 
 /* What was drawn since the last mark was this stage. */
-static inline void pni_job_mark(const pni_job *job, const char *stage) { pni_clock_mark(job->gpu, job->clock, stage); }
+static inline void pni_job_mark(const pni_job *job, const char *name) { pni_clock_mark(job->gpu, job->clock, name); }
 
 /* A pass over the receiver's view into the target. */
 static inline pni_pass pni_job_pass(const pni_job *job, const char *name, pni_program_key program) {

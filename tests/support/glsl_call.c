@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "context.h"
+#include "gl/host.h"
+#include "gl/source.h"
 
-enum { WIDTH = 64, INPUT_UNIT = PNI_UNIT_COUNT };
+enum { WIDTH = 64, MAPS_UNIT = 0, RANGE_UNIT, INPUT_UNIT = PNI_UNITS };
 
 static const char vertex_text[] =
     "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }\n";
@@ -36,8 +38,8 @@ static GLuint make_program(stage *s, const glsl_function *f) {
   GLuint program = gl_program(vertex_text, whole);
   free(whole);
   glUseProgram(program);
-  glUniform1i(glGetUniformLocation(program, "pn_maps"), PNI_UNIT_MAPS);
-  glUniform1i(glGetUniformLocation(program, "pn_range"), PNI_UNIT_RANGE);
+  glUniform1i(glGetUniformLocation(program, "pn_maps"), MAPS_UNIT);
+  glUniform1i(glGetUniformLocation(program, "pn_range"), RANGE_UNIT);
   glUniform1i(glGetUniformLocation(program, "call_inputs"), INPUT_UNIT);
   return program;
 }

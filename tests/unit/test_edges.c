@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "casters/edges.h"
+#include "silhouettes/edges.h"
 #include "gl_context.h"
 #include "soup.h"
 

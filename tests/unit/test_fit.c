@@ -26,15 +26,16 @@ static vec box_corner(const pni_box *b, int i) {
 }
 
 /* A light at the origin that shines along z, u along x, v = u x z along -y. */
-static pni_frame frame_along_z(bool sun, double extent) {
+static pni_frame frame_along_z(bool sun) {
   static const float z[3] = {0, 0, 1}, u[3] = {1, 0, 0};
-  pni_frame f = {.extent = {extent, extent}, .sun = sun};
+  pni_frame f = {.projection = sun ? PNI_PARALLEL : PNI_CENTRAL};
   assert_true(pni_frame_axes(z, u, &f));
   return f;
 }
 
 static pni_fit_request request_of(const pni_frame *f, int size) {
-  return (pni_fit_request){.frame = f, .width = size, .height = size};
+  static const pni_emission half = {{0.5, 0.5}};
+  return (pni_fit_request){.frame = f, .emission = &half, .width = size, .height = size};
 }
 
 static pni_fit_result fit(const pn_casters *c, const pni_fit_request *request) {
@@ -47,7 +48,7 @@ static vec map_of(const pni_frame *f, vec p) {
   pni_matrix light = pni_light_from_scene(f);
   double in[3] = {p.x, p.y, p.z}, q[3], m[3];
   pni_matrix_point(&light, in, q);
-  pni_map_point(q, f->sun, m);
+  pni_map_point(q, f->projection, m);
   return v3(m[0], m[1], m[2]);
 }
 
@@ -102,7 +103,7 @@ static void check_cover(bool sun, bool sheared) {
   uint64_t seed = sun ? 2 : 1;
   for (int round = 0; round < 2000; round++) {
     static pn_casters c;
-    pni_frame f = frame_along_z(sun, 0.5);
+    pni_frame f = frame_along_z(sun);
     pni_fit_request request = request_of(&f, 64);
     for (int k = 0; k < 2; k++) request.shear[k] = sheared ? random_in(&seed, -0.5, 0.5) : 0;
     random_boxes(&c, &seed, v3(0, 0, 5), 2, 2.5);
@@ -131,7 +132,7 @@ static void test_turned_instance(void **state) {
   pni_instance_data instance = {
       .id = 2, .scene_from_object = {{cos(a), sin(a), 0, 0, -sin(a), cos(a), 0, 0, 0, 0, 1, 0, 0.3, 0, 4, 1}}};
   pn_casters c = {.meshes = &mesh, .mesh_count = 1, .instances = &instance, .instance_count = 1};
-  pni_frame f = frame_along_z(false, 0.5);
+  pni_frame f = frame_along_z(false);
   pni_fit_request request = request_of(&f, 64);
   pni_fit_result r = fit(&c, &request);
   extent3 e = {{1e30, 1e30, 1e30}, {-1e30, -1e30, -1e30}};
@@ -151,7 +152,7 @@ static pni_fit_result fit_two(double x, double y, double z, bool sun) {
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, 5), v3(1.7, 1.3, 0.5)); /* stays, and holds the bounds at three sides */
   put_box(&c, 1, v3(x, y, z), v3(0.2, 0.2, 0.2));
-  pni_frame f = frame_along_z(sun, 0.5);
+  pni_frame f = frame_along_z(sun);
   pni_fit_request request = request_of(&f, 100);
   return fit(&c, &request);
 }
@@ -177,7 +178,7 @@ static void test_snapping_is_stable(void **state) {
   for (int i = 0; i < 5000; i++) {
     static pn_casters c;
     memset(&c, 0, sizeof c);
-    pni_frame f = frame_along_z(true, 0.5);
+    pni_frame f = frame_along_z(true);
     pni_fit_request request = request_of(&f, 100);
     vec centre = random_point(&seed, 3), half = v3(exp2(random_in(&seed, -4, 2)), exp2(random_in(&seed, -4, 2)), 1);
     put_box(&c, 0, centre, half);
@@ -199,7 +200,7 @@ static void test_snapping_is_stable(void **state) {
 static void test_crossing_and_behind(void **state) {
   (void)state;
   static pn_casters c;
-  pni_frame f = frame_along_z(false, 0.5);
+  pni_frame f = frame_along_z(false);
   pni_fit_request request = request_of(&f, 64);
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, -3), v3(1, 1, 1)); /* wholly behind */
@@ -226,7 +227,7 @@ static void test_crossing_and_behind(void **state) {
 static void test_near_and_range(void **state) {
   (void)state;
   static pn_casters c;
-  pni_frame f = frame_along_z(false, 0.5);
+  pni_frame f = frame_along_z(false);
   pni_fit_request request = request_of(&f, 64);
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, 2), v3(0.25, 0.25, 0.5));
@@ -252,7 +253,7 @@ static void test_near_and_range(void **state) {
 static void test_close_to_the_light(void **state) {
   (void)state;
   static pn_casters c;
-  pni_frame f = frame_along_z(false, 0.5);
+  pni_frame f = frame_along_z(false);
   pni_fit_request request = request_of(&f, 64);
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, 0.01), v3(0.001, 0.001, 0.001));
@@ -283,7 +284,7 @@ static pni_fit_result fit_wall(double tangent, bool both_ways) {
   static pn_casters c;
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, 5), v3(5 * tangent, both_ways ? 5 * tangent : 1, 0));
-  pni_frame f = frame_along_z(false, 0.5);
+  pni_frame f = frame_along_z(false);
   pni_fit_request request = request_of(&f, 64);
   return fit(&c, &request);
 }
@@ -330,7 +331,7 @@ static bool inside_box(const pni_region *g, vec m) {
  * region says when. */
 static void check_visible(bool sun, uint64_t seed, bool sheared) {
   static pn_casters c;
-  pni_frame f = frame_along_z(sun, 0.8);
+  pni_frame f = frame_along_z(sun);
   int hits = 0;
   for (int round = 0; round < 300; round++) {
     random_boxes(&c, &seed, v3(0, 0, 4), 3, 1.5);
@@ -382,7 +383,7 @@ static void test_visible_keeps(void **state) {
 static void test_visible_cuts(void **state) {
   (void)state;
   static pn_casters c;
-  pni_frame f = frame_along_z(false, 0.5);
+  pni_frame f = frame_along_z(false);
   pni_region region = {{-0.05, -0.05, 0.1}, {0.05, 0.05, 0.125}}; /* 8 to 10 before the light */
   pni_fit_request request = request_of(&f, 64);
   request.visible = &region;
@@ -406,7 +407,7 @@ static void test_frustum(void **state) {
   uint64_t seed = 10;
   for (int round = 0; round < 400; round++) {
     bool sun = round & 1, infinite = round & 2, zero_to_one = round & 4;
-    pni_frame f = frame_along_z(sun, 0.5);
+    pni_frame f = frame_along_z(sun);
     double near = 0.5, far = 6, low = zero_to_one ? 0 : -1;
     double b = (1 - low) / (infinite ? -1 / near : 1 / far - 1 / near), a = infinite ? 1 : 1 - b / far;
     pni_matrix projection = {{1.2, 0, 0, 0, 0, 1.5, 0, 0, 0.1, -0.2, -a, -1, 0, 0, b, 0}};
@@ -442,7 +443,7 @@ static void test_flat(void **state) {
   const vec halves[] = {{0, 1, 1}, {1, 0, 1}, {0, 0, 1}, {0, 0, 0}, {1, 1, 0}};
   for (int sun = 0; sun < 2; sun++)
     for (int i = 0; i < 5; i++) {
-      pni_frame f = frame_along_z(sun, 0.5);
+      pni_frame f = frame_along_z(sun);
       pni_fit_request request = request_of(&f, 64);
       memset(&c, 0, sizeof c);
       put_box(&c, 0, v3(0, 0, 5), halves[i]);
@@ -456,7 +457,7 @@ static void test_flat(void **state) {
       assert_true(r.w_far < e.least.z && e.most.z < r.w_near);
     }
   memset(&c, 0, sizeof c);
-  pni_frame f = frame_along_z(false, 0.5);
+  pni_frame f = frame_along_z(false);
   pni_fit_request request = request_of(&f, 64);
   assert_true(fit(&c, &request).empty);
   put_box(&c, 3, v3(0, 0, 5), v3(1, 1, 1));
@@ -470,7 +471,7 @@ static void test_given(void **state) {
   static pn_casters c;
   memset(&c, 0, sizeof c);
   put_box(&c, 0, v3(0, 0, 3), v3(2, 2, 0.5));
-  pni_frame f = frame_along_z(false, 0.5);
+  pni_frame f = frame_along_z(false);
   pni_fit_request request = request_of(&f, 64);
   const float given[6] = {-0.3f, -0.7f, 4, 1.1f, 0.9f, 5};
   request.given = given;

@@ -57,13 +57,13 @@ static void free_layers(float **layers, int count) {
 static double beyond(const stage *s, int map, int x, int y, double share, bool sun) {
   pn_maps_info info;
   assert_ok(pn_light_maps(s->light, &info));
-  const float *tile = s->light->maps.block.map_bounds[map];
+  const pni_map_block *tile = &s->light->maps.block.maps[map];
   double least[2] = {info.s0, info.t0}, most[2] = {info.s1, info.t1}, far = -1e9;
   for (int i = 0; i < 2; i++) {
     double half = share / 2 * (most[i] - least[i]), middle = (least[i] + most[i]) / 2;
     if (!sun) middle = fmin(fmax(0, least[i] + half), most[i] - half);
-    double at = tile[i] + ((i ? y : x) + 0.5) / tile[i + 2];
-    far = fmax(far, (fabs(at - middle) - half) * tile[i + 2]);
+    double at = tile->origin[i] + ((i ? y : x) + 0.5) / tile->density[i];
+    far = fmax(far, (fabs(at - middle) - half) * tile->density[i]);
   }
   return far;
 }
@@ -73,7 +73,7 @@ static void check_texels(scene_kind kind, const char *technique, double focus) {
   stage s;
   pn_light_desc light = put_up(&s, kind);
   update(&s, &light, technique, 100);
-  int count = s.light->maps.depth.layers, each = s.light->maps.layers;
+  int count = s.light->maps.depth.layers, each = pni_want_layers(&s.light->maps.want);
   bool farthest = s.light->maps.want.farthest;
   float **whole = read_layers(&s);
   update(&s, &light, technique, focus);

@@ -4,6 +4,7 @@
 
 #include "gl/state.h"
 #include "maps/maps.h"
+#include "maps/range.h"
 #include "stage.h"
 
 #include "context.h"
@@ -15,7 +16,7 @@ typedef struct {
   pni_frame frame;
   pni_maps maps;
   pni_map_draw draw;
-  pni_light_block block;
+  pni_emission emission;
 } bench;
 
 static void bench_open(bench *b, bool sun) {
@@ -24,8 +25,8 @@ static void bench_open(bench *b, bool sun) {
   stage_open(&b->s);
   b->gpu = &b->s.context->gpu;
   assert_true(pni_frame_axes(z, u, &b->frame));
-  b->frame.sun = sun;
-  b->frame.extent[0] = b->frame.extent[1] = 0.5;
+  b->frame.projection = sun ? PNI_PARALLEL : PNI_CENTRAL;
+  b->emission = (pni_emission){{0.5, 0.5}};
   b->draw = (pni_map_draw){.frame = &b->frame,
                            .casters = b->s.casters,
                            .groups = PN_GROUPS_ALL,
@@ -41,17 +42,18 @@ static void bench_close(bench *b) {
 
 static void bench_draw(bench *b, const pni_maps_want *want, int width, int height) {
   assert_ok(pni_maps_shape(b->gpu, &b->maps, want, 1, width, height));
-  pni_block_frame(&b->block, &b->frame, b->gpu, 1, b->maps.layers, width, height);
-  pni_block_map(&b->block, b->gpu, &b->draw, width, height);
-  assert_ok(pni_maps_draw(b->gpu, &b->maps, &b->draw));
+  pni_maps_describe(b->gpu, &b->maps, &b->frame, &b->emission);
+  assert_ok(pni_maps_add(b->gpu, &b->maps, &b->draw));
   if (want->range.structure) {
     pni_buffer buffer = {0};
-    assert_ok(pni_uniform_buffer_set(b->gpu, &buffer, &b->block, sizeof b->block));
-    glBindBufferBase(GL_UNIFORM_BUFFER, PNI_BLOCK_BINDING, buffer.id);
+    const pni_light_block *block = &b->maps.block;
+    assert_ok(pni_buffer_fill(b->gpu, &buffer, "light", PNI_BUFFER_BLOCK, block, sizeof *block));
+    pni_bind_block(b->gpu, &buffer);
     assert_ok(pni_range_build(b->gpu, &b->maps));
     pni_buffer_free(b->gpu, &buffer, false);
   }
   pni_state_reset(b->gpu);
+  pni_forget(b->gpu);
 }
 
 static float *layer_of(const bench *b, int layer) {
@@ -71,7 +73,7 @@ static const pni_maps_want one_layer = {.near_layers = 1};
 /* Where the plane n . P = c shows at (s, t): rectangle w = (n_x s + n_y t + n_z) / c, sun n_x s + n_y t - n_z w = c. */
 static double plane_w(const bench *b, vec n, double c, double s, double t) {
   double along = n.x * s - n.y * t;
-  return b->frame.sun ? (along - c) / n.z : (along + n.z) / c;
+  return (b->frame.projection == PNI_PARALLEL) ? (along - c) / n.z : (along + n.z) / c;
 }
 
 /* The block says what error it expects: of a stored depth in w, and of the raster in texels, which a slope turns into
@@ -94,7 +96,7 @@ static void check_plane(bool sun, uint64_t *seed, int width, int height) {
   double slope = fabs(plane_w(&b, n, c, ds, dt) - plane_w(&b, n, c, 0, dt)) +
                  fabs(plane_w(&b, n, c, ds, dt) - plane_w(&b, n, c, ds, 0));
   /* The soup's floats move its corners by half a unit in the last place of 12. */
-  double allowed = b.block.range[2] + b.block.range[3] * slope + 12 * 0x1p-24 * (sun ? 4 : 1);
+  double allowed = b.maps.block.w_error + b.maps.block.raster_error * slope + 12 * 0x1p-24 * (sun ? 4 : 1);
   for (int i = 0; i < width * height; i++) {
     double at_s = bounds[0] + (i % width + 0.5) * ds, at_t = bounds[1] + (i / width + 0.5) * dt;
     double want = plane_w(&b, n, c, at_s, at_t), found = w_of(&b, depth[i]);
@@ -126,7 +128,7 @@ static void cast_stack(bench *b) {
   static const int order[QUADS] = {3, 0, 5, 1, 4, 2};
   for (int i = 0; i < QUADS; i++) {
     soup quad = {0};
-    double z = distances[order[i]], half = b->frame.sun ? 0.5 : 0.5 * z;
+    double z = distances[order[i]], half = (b->frame.projection == PNI_PARALLEL) ? 0.5 : 0.5 * z;
     soup_patch(&quad, v3(0, 0, z), v3(half, 0, 0), v3(0, half, 0));
     stage_cast(&b->s, &quad);
     soup_free(&quad);
@@ -138,10 +140,10 @@ static bool inside_half(int texel, int size) { return texel >= size / 4 && texel
 static void check_layer(const bench *b, int layer, double z, float nothing) {
   float *depth = layer_of(b, layer);
   int size = b->maps.depth.width;
-  double w = b->frame.sun ? -z : 1 / z;
+  double w = (b->frame.projection == PNI_PARALLEL) ? -z : 1 / z;
   for (int i = 0; i < size * size; i++) {
     if (z > 0 && inside_half(i % size, size) && inside_half(i / size, size))
-      assert_true(fabs(w_of(b, depth[i]) - w) <= b->block.range[2]);
+      assert_true(fabs(w_of(b, depth[i]) - w) <= b->maps.block.w_error);
     else assert_true(depth[i] == nothing);
   }
   free(depth);
@@ -156,7 +158,7 @@ static void test_layers(void **state) {
       cast_stack(&b);
       const pni_maps_want want = {.near_layers = layers, .farthest = layers & 1};
       bench_draw(&b, &want, 16, 16);
-      assert_int_equal(b.maps.layers, layers + (layers & 1));
+      assert_int_equal(b.maps.depth.layers, layers + (layers & 1));
       for (int i = 0; i < layers; i++) check_layer(&b, i, i < QUADS ? distances[i] : 0, 1);
       if (want.farthest) check_layer(&b, layers, distances[QUADS - 1], 0);
       bench_close(&b);
@@ -194,8 +196,8 @@ static void test_faces(void **state) {
     bench_draw(&b, &want, 4, 4);
     float *near = layer_of(&b, 0), *far = layer_of(&b, 1);
     for (int k = 0; k < 16; k++) {
-      assert_true(fabs(w_of(&b, near[k]) + cases[i].nearest) <= b.block.range[2]);
-      assert_true(fabs(w_of(&b, far[k]) + cases[i].farthest) <= b.block.range[2]);
+      assert_true(fabs(w_of(&b, near[k]) + cases[i].nearest) <= b.maps.block.w_error);
+      assert_true(fabs(w_of(&b, far[k]) + cases[i].farthest) <= b.maps.block.w_error);
     }
     free(near);
     free(far);
@@ -235,7 +237,8 @@ static void test_crossing_layers(void **state) {
       for (; at > 0 && w[at - 1] < value; at--) w[at] = w[at - 1];
       w[at] = value;
     }
-    double allowed = b.block.range[2] + b.block.range[3] * 4.0 / SIZE + 1e-5; /* slopes up to 2 along s and t */
+    double allowed =
+        b.maps.block.w_error + b.maps.block.raster_error * 4.0 / SIZE + 1e-5; /* slopes up to 2 along s and t */
     for (int k = 1; k < SHEETS; k++) gap = fmin(gap, w[k - 1] - w[k]);
     if (gap < 4 * allowed) continue; /* two at one depth are one layer */
     compared++;
@@ -264,7 +267,7 @@ static void test_near_and_behind(void **state) {
   float *depth = layer_of(&b, 0);
   for (int i = 0; i < 64; i++) {
     assert_true(depth[i] > 0 && depth[i] < 1);
-    assert_true(fabs(w_of(&b, depth[i]) - b.draw.w_near) <= b.block.range[2]);
+    assert_true(fabs(w_of(&b, depth[i]) - b.draw.w_near) <= b.maps.block.w_error);
   }
   free(depth);
   assert_ok(pn_instance_remove(b.s.casters, instance));
@@ -277,7 +280,8 @@ static void test_near_and_behind(void **state) {
     double s = -1 + (i % 10 + 0.5) * 0.2;
     if (s < 0.15) /* the wall ends at z = 5 */
       assert_true(depth[i] == 1);
-    else if (s > 0.25) assert_true(fabs(w_of(&b, depth[i]) - s) <= b.block.range[2] + b.block.range[3] * 0.2);
+    else if (s > 0.25)
+      assert_true(fabs(w_of(&b, depth[i]) - s) <= b.maps.block.w_error + b.maps.block.raster_error * 0.2);
   }
   free(depth);
   soup_free(&near);

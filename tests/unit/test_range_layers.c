@@ -10,7 +10,7 @@
 static double w_at(const pni_maps *maps, int map, const float *depth, int x, int y) {
   bool inside = x >= 0 && y >= 0 && x < maps->depth.width && y < maps->depth.height;
   double d = inside ? depth[y * maps->depth.width + x] : 0;
-  return d <= 0 || d >= 1 ? -1e30 : maps->block.map_depth[map][0] + maps->block.map_depth[map][1] * d;
+  return d <= 0 || d >= 1 ? -1e30 : maps->block.maps[map].w_of_depth[0] + maps->block.maps[map].w_of_depth[1] * d;
 }
 
 /* Over texels from (x0, y0) up to, not including, (x1, y1); over quads each brings its right and upper neighbours.
@@ -27,9 +27,10 @@ static void assert_range(const pni_maps *maps, int map, const float *depth, cons
   const double want[3] = {most, least, there};
   /* One product and one sum in float. */
   for (int i = 0; i < (maps->want.range.least_there ? 3 : 2); i++) {
-    double allowed = fabs(want[i]) > 1e29
-                         ? 1e24
-                         : 4 * 0x1p-24 * (fabs(maps->block.map_depth[map][0]) + fabs(maps->block.map_depth[map][1]));
+    double allowed =
+        fabs(want[i]) > 1e29
+            ? 1e24
+            : 4 * 0x1p-24 * (fabs(maps->block.maps[map].w_of_depth[0]) + fabs(maps->block.maps[map].w_of_depth[1]));
     if (!(fabs(found[i] - want[i]) <= allowed))
       fail_msg("map %d, texels %d..%d x %d..%d: %.9g, not %.9g", map, box[0], box[2], box[1], box[3], found[i],
                want[i]);
@@ -41,7 +42,7 @@ static int at_least(int a, int b) { return a > b ? a : b; }
 
 static void check_layer(const pni_maps *maps, int index) {
   const pni_texture *range = &maps->range;
-  int width = maps->depth.width, height = maps->depth.height, map = index / maps->layers;
+  int width = maps->depth.width, height = maps->depth.height, map = index / pni_want_layers(&maps->want);
   bool stack = maps->want.range.structure == PNI_RANGE_STACK;
   int levels = stack ? range->layers / maps->depth.layers : range->levels;
   float *depth = gl_read_depth(maps->depth.id, index, width, height);
@@ -83,10 +84,10 @@ static void look(const char *spec, bool wide, int width, int height) {
   assert_ok(pn_light_set(s.light, &light));
   assert_ok(pn_maps_update(s.light, s.casters, PN_GROUPS_ALL, NULL, 0));
   const pni_maps *maps = &s.light->maps;
-  int tiles = (int)maps->block.maps[0];
+  int tiles = (int)maps->block.map_count;
   assert_true(wide ? tiles > 1 : tiles == 1);
-  assert_int_equal(maps->depth.layers, tiles * maps->layers);
-  for (int i = 0; i < tiles * maps->layers; i++) check_layer(maps, i);
+  assert_int_equal(maps->depth.layers, tiles * pni_want_layers(&maps->want));
+  for (int i = 0; i < tiles * pni_want_layers(&maps->want); i++) check_layer(maps, i);
   soup_free(&leaves);
   stage_close(&s);
 }

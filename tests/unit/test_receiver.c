@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gl/host.h"
 #include "gl/program.h"
+#include "gl/source.h"
 #include "gl/state.h"
 #include "receiver/receiver.h"
 #include "stage.h"
@@ -38,10 +40,12 @@ static const char vertex_text[] =
     "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }\n";
 
 static GLuint surface_program(pni_gpu *gpu, pn_receiver *receiver, pni_program *names) {
-  static const char *const paths[] = {"shaders/precision.glsl", "search/receiver.glsl", "receiver/surface.glsl", NULL};
-  static const char *const uniforms[] = {
-      "pn_light_from_pixel", "pn_pixel_from_light", "pn_light_from_normal", "pn_eye", "pn_view",
-      "pn_offset",           "pn_quantum"};
+  static const char *const paths[] = {"shaders/precision.glsl", "gather/shaded_point.glsl", "receiver/surface.glsl",
+                                      NULL};
+  enum { SAMPLERS = 3, UNIFORMS = 10 };
+  static const char *const uniforms[UNIFORMS] = {
+      "pn_depth", "pn_normal", "pn_planes", "pn_light_from_pixel", "pn_pixel_from_light", "pn_light_from_normal",
+      "pn_eye",   "pn_view",   "pn_offset", "pn_quantum"};
   char defines[PNI_RECEIVER_DEFINES], *text;
   pni_receiver_defines(receiver, defines);
   assert_ok(pni_shader_text(gpu, paths, defines, &text));
@@ -50,14 +54,18 @@ static GLuint surface_program(pni_gpu *gpu, pn_receiver *receiver, pni_program *
   pni_free(gpu, text);
   GLuint program = gl_program(vertex_text, whole);
   free(whole);
-  *names = (pni_program){.id = program, .uniform_count = 7};
-  for (int i = 0; i < 7; i++) {
-    snprintf(names->uniforms[i].name, PNI_UNIFORM_NAME, "%s", uniforms[i]);
-    names->uniforms[i].location = glGetUniformLocation(program, uniforms[i]);
-  }
+  *names = (pni_program){.id = program, .uniform_count = UNIFORMS};
   glUseProgram(program);
-  glUniform1i(glGetUniformLocation(program, "pn_depth"), PNI_UNIT_DEPTH);
-  glUniform1i(glGetUniformLocation(program, "pn_normal"), PNI_UNIT_NORMAL);
+  for (int i = 0; i < UNIFORMS; i++) {
+    pni_uniform *u = &names->uniforms[i];
+    snprintf(u->name, PNI_UNIFORM_NAME, "%s", uniforms[i]);
+    u->location = glGetUniformLocation(program, uniforms[i]);
+    if (i < SAMPLERS) {
+      u->target = GL_TEXTURE_2D;
+      u->unit = i;
+      glUniform1i(u->location, i);
+    }
+  }
   return program;
 }
 
@@ -65,6 +73,8 @@ static surfaces run(stage *s, const view *v, const pni_frame *frame) {
   int width = v->camera.width, height = v->camera.height;
   pni_gpu *gpu = &s->context->gpu;
   pni_program names;
+  pni_forget(gpu);
+  assert_ok(pni_receiver_surfaces(s->receiver));
   GLuint program = surface_program(gpu, s->receiver, &names), framebuffer, array, images[IMAGES];
   static const GLenum all[IMAGES] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
   glGenTextures(IMAGES, images);
@@ -79,13 +89,19 @@ static surfaces run(stage *s, const view *v, const pni_frame *frame) {
   }
   glDrawBuffers(IMAGES, all);
   glViewport(0, 0, width, height);
-  pni_receiver_bind(s->receiver, &names, frame, 1);
+  pni_forget(gpu);
+  pni_ready(gpu);
+  gpu->program = &names;
+  glUseProgram(program);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  pni_receiver_uniforms(s->receiver, frame, 1);
   glBindVertexArray(array);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   surfaces out = {gl_read_texture(images[0], 0, -1, width, height, 4),
                   gl_read_texture(images[1], 0, -1, width, height, 4),
                   gl_read_texture(images[2], 0, -1, width, height, 4), width};
   pni_state_reset(gpu);
+  pni_forget(gpu);
   glDeleteTextures(IMAGES, images);
   glDeleteVertexArrays(1, &array);
   glDeleteFramebuffers(1, &framebuffer);
@@ -243,7 +259,8 @@ static void test_declared_errors(void **state) {
     soup scene = make_scene(&seed);
     setup t = random_setup(&seed);
     static const float z[3] = {0.3f, -1, 0.2f}, u[3] = {1, 0.1f, 0};
-    pni_frame frame = {.origin = {-0.5, random_in(&seed, 2, 40), 0.3}, .sun = random_bits(&seed) & 1};
+    pni_frame frame = {.origin = {-0.5, random_in(&seed, 2, 40), 0.3},
+                       .projection = random_bits(&seed) & 1 ? PNI_PARALLEL : PNI_CENTRAL};
     assert_true(pni_frame_axes(z, u, &frame));
     tally found = check(&t, &scene, &frame);
     if (found.worst_p > 1 || found.worst_n > 1)

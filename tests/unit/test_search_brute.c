@@ -23,11 +23,11 @@ typedef struct {
 static atlas read_maps(const stage *s) {
   const pni_maps *maps = &s->light->maps;
   atlas a = {.block = &maps->block,
-             .maps = (int)maps->block.maps[0],
-             .layers = maps->layers,
+             .maps = (int)maps->block.map_count,
+             .layers = pni_want_layers(&maps->want),
              .width = maps->depth.width,
              .height = maps->depth.height,
-             .sun = maps->block.extent[2] > 0.5f};
+             .sun = maps->block.parallel > 0.5f};
   for (int i = 0; i < a.maps * a.layers; i++) a.depth[i] = gl_read_depth(maps->depth.id, i, a.width, a.height);
   return a;
 }
@@ -42,12 +42,12 @@ typedef struct {
 
 /* The sample of a texel; false where there is none. */
 static bool sample_of(const atlas *a, int map, int layer, int x, int y, place *out) {
-  const float *bounds = a->block->map_bounds[map], *scale = a->block->map_depth[map];
-  *out = (place){bounds[0] + (x + 0.5) / bounds[2], bounds[1] + (y + 0.5) / bounds[3], -1e30};
+  const pni_map_block *m = &a->block->maps[map];
+  *out = (place){m->origin[0] + (x + 0.5) / m->density[0], m->origin[1] + (y + 0.5) / m->density[1], -1e30};
   if (x < 0 || y < 0 || x >= a->width || y >= a->height) return false;
   double depth = a->depth[map * a->layers + layer][y * a->width + x];
   if (depth <= 0 || depth >= 1) return false;
-  out->w = scale[0] + scale[1] * depth;
+  out->w = m->w_of_depth[0] + m->w_of_depth[1] * depth;
   return true;
 }
 
@@ -64,10 +64,10 @@ typedef struct {
  * worse, up to 1e-5. */
 static receiver receiver_at(const atlas *a, const light_axes *l, vec p, vec n) {
   vec d = sub(p, l->origin);
-  double z = dot(d, l->z), scale = l->sun ? 1 : 1 / z, map_error = a->block->range[2];
+  double z = dot(d, l->z), scale = l->sun ? 1 : 1 / z, map_error = a->block->w_error;
   receiver r = {.n = {dot(n, l->u), dot(n, l->v), dot(n, l->z)},
                 .half = {l->half_u, l->half_v},
-                .texel = {1 / a->block->map_bounds[0][2], 1 / a->block->map_bounds[0][3]}};
+                .texel = {a->block->texel[0], a->block->texel[1]}};
   if (l->sun) d = p;
   r.m =
       l->sun ? (place){dot(p, l->u), dot(p, l->v), -dot(p, l->z)} : (place){dot(d, l->u) / z, dot(d, l->v) / z, 1 / z};
@@ -75,7 +75,8 @@ static receiver receiver_at(const atlas *a, const light_axes *l, vec p, vec n) {
   r.reach = l->sun ? 1 : length(d);
   r.error = 2e-6 * scale * (1 + fabs(r.m.s) + fabs(r.m.t));
   r.w_most = map_error + scale * scale * 1e-5;
-  r.plane_least = fabs(r.k) * map_error + a->block->range[3] * (fabs(r.n[0]) * r.texel[0] + fabs(r.n[1]) * r.texel[1]);
+  r.plane_least =
+      fabs(r.k) * map_error + a->block->raster_error * (fabs(r.n[0]) * r.texel[0] + fabs(r.n[1]) * r.texel[1]);
   r.plane_most = r.plane_least + scale * 1e-5 * 1.8;
   return r;
 }

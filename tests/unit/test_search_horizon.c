@@ -1,4 +1,4 @@
-/* The part of the light above a receiver's horizon: search/horizon.glsl against a polygon clipped in double. */
+/* The part of the light above a receiver's horizon: gather/horizon.glsl against a polygon clipped in double. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,7 +50,7 @@ static void fill(void) {
 }
 
 static double compare(double allowed) {
-  static const char *const paths[] = {"shaders/precision.glsl", "search/horizon.glsl", NULL};
+  static const char *const paths[] = {"shaders/precision.glsl", "gather/horizon.glsl", NULL};
   static const char text[] =
       "void call() { results[0].x = floatBitsToUint(pn_area_above(taken(0).xy, taken(0).zw, taken(1).x)); }";
   stage s;

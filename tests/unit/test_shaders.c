@@ -8,8 +8,10 @@
 
 #include "context.h"
 #include "gl/embedded.h"
+#include "gl/source.h"
 #include "stage.h"
-#include "techniques/technique.h"
+#include "silhouettes/mesh_edges.h"
+#include "techniques/registry.h"
 
 /* ---- the list of programs ---- */
 
@@ -36,7 +38,7 @@ static void add_gathering(const char *shader, const char *own, int normals, int 
   char defines[PNI_TECHNIQUE_DEFINES + 128];
   snprintf(defines, sizeof defines, "%sPN_NORMALS %d\nPN_MASK %d\nPN_UPSAMPLE %d\nPN_DEBUG %d\n", own, normals, mask,
            upsample, debug);
-  add_key(screen, "search/visibility.glsl", shader, defines);
+  add_key(screen, "gather/visibility.glsl", shader, defines);
 }
 
 /* One set of a technique's defines: with every kind of receiver for the default one; the kinds do not look at the
@@ -44,12 +46,12 @@ static void add_gathering(const char *shader, const char *own, int normals, int 
 static void add_variant(const pni_technique_class *c, const char *own, bool full) {
   for (int i = 0; i < 40; i++) {
     int normals = i % 5, mask = i / 5 & 1, upsample = i / 10 & 1, debug = i / 20;
-    if (debug && (upsample || !c->searches)) continue;
-    if (full || i % 20 == 0) add_gathering(c->shader, own, normals, mask, upsample, debug);
+    if (debug && (upsample || !c->gathering.searches)) continue;
+    if (full || i % 20 == 0) add_gathering(c->gathering.shader, own, normals, mask, upsample, debug);
   }
   char defines[PNI_TECHNIQUE_DEFINES + 32];
   snprintf(defines, sizeof defines, "PN_LIGHTS %d\n%s", PN_FORWARD_LIGHTS_MAX, own);
-  add_key("", "shaders/forward.glsl", c->shader, defines);
+  add_key("", "shaders/forward.glsl", c->gathering.shader, defines);
 }
 
 static int value_count(const pn_parameter *p) {
@@ -69,11 +71,11 @@ static void add_technique(const pni_technique_class *c) {
   int count = 1, place[PNI_PARAMETERS_MAX] = {0}, at = 0;
   double values[PNI_PARAMETERS_MAX] = {0};
   for (int i = 0; i < t->parameter_count; i++) values[i] = t->parameters[i].initial;
-  pni_technique_defines(c, values, seen[0]);
+  pni_gather_defines(&c->gathering, t, values, seen[0]);
   add_variant(c, seen[0], true);
   while (at < t->parameter_count) {
     for (int i = 0; i < t->parameter_count; i++) values[i] = value_at(&t->parameters[i], place[i]);
-    pni_technique_defines(c, values, seen[count]);
+    pni_gather_defines(&c->gathering, t, values, seen[count]);
     int known = 0;
     while (strcmp(seen[known], seen[count])) known++;
     if (known == count) {
@@ -94,19 +96,20 @@ static void add_others(void) {
     snprintf(defines, sizeof defines, "PN_FIRST %d\nPN_STACK %d\nPN_QUADS %d\n", i & 1, i >> 1 & 1, i >> 2);
     add_key(screen, "maps/range.frag.glsl", "", defines);
   }
-  add_key(screen, "receiver/bounds.frag.glsl", "", "PN_FIRST 0\n");
+  add_key(screen, "receiver/bounds.frag.glsl", "", "PN_FIRST 0\nPN_MASK 0\n");
   add_key(screen, "receiver/bounds.frag.glsl", "", "PN_FIRST 1\nPN_MASK 0\n");
   add_key(screen, "receiver/bounds.frag.glsl", "", "PN_FIRST 1\nPN_MASK 1\n");
   add_key(screen, "receiver/copy.frag.glsl", "", "");
+  add_key(screen, "receiver/planes.frag.glsl", "", "");
   for (int i = 0; i < 10; i++) {
     snprintf(defines, sizeof defines, "PN_NORMALS %d\nPN_MASK %d\n", i % 5, i / 5);
     add_key(screen, "techniques/average/average.frag.glsl", "", defines);
   }
   add_key(screen, "techniques/average/resolve.frag.glsl", "", "");
-  add_key(screen, "maps/receiver_range.frag.glsl", "", "");
+  add_key(screen, "techniques/ssm/seen_range.frag.glsl", "", "");
   for (int i = 0; i < 20; i++) {
     snprintf(defines, sizeof defines, "PN_NORMALS %d\nPN_MASK %d\nPN_PEEL %d\n", i % 5, i / 5 & 1, i / 10);
-    add_key("maps/receiver_map.vert.glsl", "maps/receiver_map.frag.glsl", "", defines);
+    add_key("techniques/ssm/seen.vert.glsl", "techniques/ssm/seen.frag.glsl", "", defines);
     snprintf(defines, sizeof defines, "PN_NORMALS %d\nPN_MASK %d\nPN_BOUND %d\n", i % 5, i / 5 & 1, i / 10);
     add_key(screen, "techniques/ssm/lookup.frag.glsl", "", defines);
   }
@@ -124,21 +127,22 @@ static void add_others(void) {
   add_key(screen, "techniques/ssm/arguments.frag.glsl", "", "");
   add_key(screen, "techniques/ssm/add.frag.glsl", "", "");
   add_key("", "casters/peel.glsl", "", "");
-  add_key(screen, "casters/points.frag.glsl", "", "");
-  add_key(screen, "casters/silhouette.frag.glsl", "", "");
-  add_key(screen, "techniques/smoothies/keep.frag.glsl", "", "");
-  add_key(screen, "techniques/smoothies/sum.frag.glsl", "", "PN_FIRST 0\n");
-  add_key(screen, "techniques/smoothies/sum.frag.glsl", "", "PN_FIRST 1\n");
-  add_key(screen, "techniques/smoothies/count.frag.glsl", "", "");
-  add_key(screen, "techniques/smoothies/list.frag.glsl", "", "");
-  add_key("techniques/smoothies/smoothie.vert.glsl", "techniques/smoothies/smoothie.frag.glsl", "", "");
+  static const char *const tables[] = {"silhouettes/points",         "silhouettes/silhouette",
+                                       "techniques/smoothies/keep",  "techniques/smoothies/sum",
+                                       "techniques/smoothies/count", "techniques/smoothies/list"};
+  for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
+    char path[64];
+    snprintf(path, sizeof path, "%s.frag.glsl", tables[i]);
+    add_key(screen, path, "", pni_edge_defines);
+  }
+  add_key("techniques/smoothies/smoothie.vert.glsl", "techniques/smoothies/smoothie.frag.glsl", "", pni_edge_defines);
 }
 
 static void list_programs(void) {
   if (key_count) return;
   for (int i = 0; i < pn_technique_count(); i++) {
     const pni_technique_class *c = pni_technique_class_of(pn_technique_at(i));
-    if (c->shader) add_technique(c);
+    if (c->gathering.shader) add_technique(c);
   }
   add_others();
 }
@@ -247,8 +251,9 @@ static void test_every_file_is_used(void **state) {
 
 static bool in_list(const char *key) {
   for (int i = 0; i < key_count; i++) {
-    char text[1024];
-    snprintf(text, sizeof text, "%s %s %s %s", keys[i].vertex, keys[i].fragment, keys[i].more, keys[i].defines);
+    char text[4096];
+    snprintf(text, sizeof text, "%s %s %s%s%s", keys[i].vertex, keys[i].fragment, keys[i].more,
+             *keys[i].more ? " " : "", keys[i].defines);
     if (!strcmp(text, key)) return true;
   }
   return false;

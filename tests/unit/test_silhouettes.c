@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "casters/silhouettes.h"
+#include "silhouettes/silhouettes.h"
 #include "model.h"
 #include "stage.h"
 

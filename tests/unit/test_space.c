@@ -20,14 +20,13 @@ static vec get(const double a[3]) { return v3(a[0], a[1], a[2]); }
 
 /* A light somewhere, turned somehow. */
 static pni_frame random_frame(uint64_t *seed, bool sun) {
-  pni_frame f = {.sun = sun};
+  pni_frame f = {.projection = sun ? PNI_PARALLEL : PNI_CENTRAL};
   float z[3], u[3];
   do {
     put(random_direction(seed), z);
     put(random_direction(seed), u);
   } while (!pni_frame_axes(z, u, &f));
   for (int i = 0; i < 3; i++) f.origin[i] = sun ? 0 : random_in(seed, -5, 5);
-  for (int i = 0; i < 2; i++) f.extent[i] = random_in(seed, 0.1, 2);
   return f;
 }
 
@@ -44,7 +43,7 @@ static vec in_light(const pni_frame *f, vec scene) {
 static void map_of(const pni_frame *f, vec scene, double m[3]) {
   vec p = in_light(f, scene);
   const double values[3] = {p.x, p.y, p.z};
-  pni_map_point(values, f->sun, m);
+  pni_map_point(values, f->projection, m);
 }
 
 static void close_to(double a, double b, double size) { assert_true(fabs(a - b) <= tiny * size); }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "gl_context.h"
-#include "techniques/technique.h"
+#include "techniques/registry.h"
 
 static double value_of(const char *spec, const char *name) {
   const pn_technique *t = NULL;
@@ -131,16 +131,16 @@ static void test_locale(void **state) {
 
 static void test_set_by_name(void **state) {
   (void)state;
-  const pn_technique *t = pn_technique_find("pcf");
+  const pni_technique_class *t = pni_technique_class_of(pn_technique_find("pcf"));
   double values[2] = {0, 5};
-  pn_message message;
-  assert_true(pni_parameter_set(t, "taps", 9, values, &message) && values[1] == 9);
-  assert_false(pni_parameter_set(t, "tap", 9, values, &message));
-  assert_int_equal(message, PN_MESSAGE_PARAMETER_UNKNOWN);
+  pni_explanation why;
+  assert_true(pni_parameter_set(t, "taps", 9, values, &why) == PN_OK && values[1] == 9);
+  assert_int_equal(pni_parameter_set(t, "tap", 9, values, &why), PN_ERROR_ARGUMENT);
+  assert_int_equal(why.message, PN_MESSAGE_PARAMETER_UNKNOWN);
   static const double bad[] = {0, 65, 2.5, NAN, INFINITY, -1};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-    assert_false(pni_parameter_set(t, "taps", bad[i], values, &message));
-    assert_int_equal(message, PN_MESSAGE_PARAMETER_VALUE);
+    assert_int_equal(pni_parameter_set(t, "taps", bad[i], values, &why), PN_ERROR_ARGUMENT);
+    assert_int_equal(why.message, PN_MESSAGE_PARAMETER_VALUE);
   }
   assert_true(values[1] == 9);
 }

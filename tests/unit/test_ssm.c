@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gl/host.h"
 #include "light.h"
 #include "over_ground.h"
 #include "techniques/ssm/ssm.h"
@@ -29,10 +30,10 @@ static void add_clutter(scene *c) {
 /* ---- lists ------------------------------------------------------------------------------------------------------- */
 
 /* The list that the last draw left, of its last side and layer: 8 floats an entry. */
-static float *read_list(pni_pair *pair, int count) {
+static float *read_list(const pni_ssm_state *state, int count) {
   float *out = malloc((size_t)(count ? count : 1) * 8 * sizeof *out);
   for (int half = 0; half < 2; half++) {
-    const pni_texture *t = &pair->work[SSM_LIST + half];
+    const pni_texture *t = half ? &state->limits : &state->list;
     float *texels = gl_read_texture(t->id, 0, -1, t->width, t->height, 4);
     for (int i = 0; i < count; i++) memcpy(out + 8 * i + 4 * half, texels + 4 * i, 4 * sizeof *out);
     free(texels);
@@ -40,10 +41,9 @@ static float *read_list(pni_pair *pair, int count) {
   return out;
 }
 
-static int gpu_total(scene *c, pni_pair *pair) {
-  const pni_texture *t = &pair->work[SSM_COUNTS];
+static int gpu_total(const pni_ssm_state *state) {
+  const pni_texture *t = &state->counts;
   GLuint top[4] = {0};
-  (void)c;
   glBindTexture(GL_TEXTURE_2D, t->id);
   glGetTexImage(GL_TEXTURE_2D, t->levels - 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT, top);
   return (int)(top[0] & 0x7fffffffu);
@@ -59,11 +59,14 @@ static void check_lists(const char *spec, int map) {
   free(stage_visibility(&c.s, &light, spec));
   pni_pair *pair = pni_pair_find(&c.s.light->object, &c.s.receiver->object);
   assert_non_null(pair);
-  int count = gpu_total(&c, pair), cpu_count;
-  float *gpu = read_list(pair, count), *cpu;
-  pni_visibility_request request = {.gpu = &c.s.context->gpu, .maps = &c.s.light->maps, .pair = pair};
-  ssm_list list = {.request = &request, .layer = c.s.light->maps.layers - 1, .share = c.s.light->values[4] / 100};
-  assert_ok(ssm_cpu_list(&list, &cpu, &cpu_count));
+  pni_ssm_state *kept = pair->kept.state;
+  int count = gpu_total(kept), cpu_count;
+  float *gpu = read_list(kept, count), *cpu;
+  pni_job job = {.gpu = &c.s.context->gpu, .maps = &c.s.light->maps, .pair_state = kept};
+  pni_ssm_list list = {
+      .job = &job, .state = kept, .layer = pni_want_layers(&job.maps->want) - 1, .share = c.s.light->values[4] / 100};
+  pni_enter(c.s.context);
+  assert_ok(pni_leave(c.s.context, pni_ssm_cpu_list(&list, &cpu, &cpu_count)));
   print_message("%s, %d: %d and %d patches\n", spec, map, count, cpu_count);
   assert_true(count > 0);
   int different = 0;

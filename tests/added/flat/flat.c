@@ -19,5 +19,6 @@ const pni_technique_class pni_technique_flat = {
               .forward = 1,
               .self_shadows = 1},
     .want = want,
-    .shader = "techniques/flat/flat.glsl",
+    .draw = pni_gather,
+    .gathering = {.shader = "techniques/flat/flat.glsl"},
 };
