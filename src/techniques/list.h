@@ -1,5 +1,5 @@
-/* The techniques there are, in the order in which they are listed: a line for each folder. Included by registry.c, which says
- * what becomes of a line. */
+/* The techniques there are, in the order in which they are listed: a line for each folder. Included by registry.c,
+ * which says what becomes of a line. */
 PNI_TECHNIQUE(hard)
 PNI_TECHNIQUE(pcf)
 PNI_TECHNIQUE(pcss)
