@@ -1,5 +1,5 @@
-# Input: the table of rooms, then unit TAB unit TAB why. Prints each arrow that the table does not allow, each unit that it has
-# no room for, and each circle in the table itself.
+# Input: the table of rooms, then unit TAB unit TAB why. Prints each arrow that the table does not allow, each unit that
+# it has no room for, and each circle in the table itself.
 function words(text, out) { return split(text, out, /[ \t]+/) }
 
 function trim(text) {
@@ -7,17 +7,21 @@ function trim(text) {
   return text
 }
 
-# room | files | rooms it may use
-function read_room(line,    part, list, i, count) {
+# room | files | rooms it may use; * for all that are above it
+function read_room(line,    part, list, i, count, above) {
   split(line, part, "|")
-  name = trim(part[1])
+  if (trim(part[1]) != "") name = trim(part[1]) # else the row before goes on
   count = words(trim(part[2]), list)
   for (i = 1; i <= count; i++) room_of[list[i]] = name
   count = words(trim(part[3]), list)
   for (i = 1; i <= count; i++) allowed[name, list[i]] = 1
-  rank[name] = ++rooms
+  if ((name, "*") in allowed)
+    for (above in rank)
+      if (above != name) allowed[name, above] = 1
+  if (!(name in rank)) rank[name] = ++rooms
   for (i = 1; i <= count; i++)
-    if (!(list[i] in rank)) print FILENAME ":" FNR ": " name " may use " list[i] ", which is not above it in the table"
+    if (list[i] != "*" && (!(list[i] in rank) || list[i] == name))
+      print FILENAME ":" FNR ": " name " may use " list[i] ", which is not above it in the table"
 }
 
 # The unit's own entry, else that of its folder, of each folder around that; DIR/*/ makes a room of each folder in DIR.

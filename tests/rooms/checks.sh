@@ -41,7 +41,7 @@ printf 'int pni_e(void);\nint pni_e(void) { return 2; }\n' >src/tool/two/e.c
 echo '#include "low/y.glsl"' >src/low/x.glsl
 echo 'float y;' >src/low/y.glsl
 printf '#define PN_API\nPN_API int pn_c(void);\n' >public.h
-printf 'low | low/ |\ntool | tool/*/ | low\nhigh | high/c | low tool # all\n' >table
+printf 'low | low/a |\n | low/ |\ntool | tool/*/ | low\nhigh | high/c | low tool # all\n' >table
 compile
 says 0 '' includes src
 says 0 '' symbols objects
@@ -77,6 +77,8 @@ printf 'low | low/ |\ntool | tool/*/ | low\n' >part
 says 1 'high/c: the table has no room for it' arrows src part
 printf 'low | low/ | high\nhigh | high/ | low\ntool | tool/ |\n' >part
 says 1 'low may use high, which is not above it' arrows src part
+printf 'low | low/ |\ntool | tool/*/ | *\nhigh | high/c | *\n' >all
+says 1 'tool may not use tool: tool/two/e -> tool/one/d (src/tool/two/e.h:1)' arrows src all
 
 # GL: a call, a macro, a constant, a type, a header; comments and strings are none.
 cat >src/high/d.h <<'END'

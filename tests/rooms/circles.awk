@@ -1,4 +1,5 @@
-# Input: node TAB node TAB why. Prints every circle with its members and the arrows between them; nothing where there is none.
+# Input: node TAB node TAB why. Prints every circle with its members and the arrows between them; nothing where there is
+# none.
 function walk(from, at,    list, i, count) {
   if ((from, at) in reaches) return
   reaches[from, at] = 1

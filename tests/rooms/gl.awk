@@ -1,4 +1,10 @@
 # Prints where a C source names GL: a call of gl...() or GL(), a GL_ constant, a GL type. Comments and strings may.
+BEGIN {
+  types = "enum|boolean|bitfield|byte|short|int|sizei|ubyte|ushort|uint|half|float|clampf|double|clampd|char|int64"
+  types = types "|uint64|sync|intptr|sizeiptr|fixed|void"
+  named = "[^A-Za-z0-9_](GL[ \t]*\\(|gl[A-Z][A-Za-z0-9]*[ \t]*\\(|GL_[A-Z0-9_]+|GL(" types ")[^A-Za-z0-9_])"
+}
+
 function strip(line,    out, at, rest) {
   out = ""
   while (line != "") {
@@ -29,7 +35,7 @@ function strip(line,    out, at, rest) {
 {
   text = " " strip($0) " "
   found = ""
-  while (match(text, /[^A-Za-z0-9_](GL[ \t]*\(|gl[A-Z][A-Za-z0-9]*[ \t]*\(|GL_[A-Z0-9_]+|GL(enum|boolean|bitfield|byte|short|int|sizei|ubyte|ushort|uint|half|float|clampf|double|clampd|char|int64|uint64|sync|intptr|sizeiptr|fixed|void)[^A-Za-z0-9_])/)) {
+  while (match(text, named)) {
     token = substr(text, RSTART + 1, RLENGTH - 1)
     gsub(/[ \t(),;*]+$/, "", token)
     if (!index(" " found " ", " " token " ")) found = found (found == "" ? "" : " ") token

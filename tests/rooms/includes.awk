@@ -1,5 +1,5 @@
-# Standard input: paths of sources below folder. Prints unit TAB unit TAB why for each include of one by another; an include in
-# quotes is looked for beside the file and from the folder.
+# Standard input: paths of sources below folder. Prints unit TAB unit TAB why for each include of one by another; an
+# include in quotes is looked for beside the file and from the folder.
 function unit(path) {
   sub(/\.[ch]$/, "", path)
   return path

@@ -1,5 +1,5 @@
-# Input: the public header, then nm -A -P -g of the static library. Prints each outside name that is not pni_..., nor pn_... and
-# declared in the header, and each that the header declares and nothing defines.
+# Input: the public header, then nm -A -P -g of the static library. Prints each outside name that is not pni_..., nor
+# pn_... and declared in the header, and each that the header declares and nothing defines.
 FNR == 1 { file++ }
 file == 1 {
   if (/PN_API/) declaring = 1

@@ -88,7 +88,7 @@ case $check in
     cd "${1:-.}" || exit 2
     # A tree that was unpacked, not checked out, has only what is tracked, but for what is built.
     if [ -e .git ]; then git ls-files; else find . -name build -prune -o -type f -print | sed 's|^\./||'; fi |
-      grep -E '(\.(c|h|glsl|cmake|sh)|(^|/)CMakeLists\.txt)$|^script/' | LC_ALL=C sort >"$work/files"
+      grep -E '(\.(c|h|glsl|cmake|sh|awk)|(^|/)CMakeLists\.txt)$|^script/' | LC_ALL=C sort >"$work/files"
     some "$work/files" "no sources in $PWD"
     tr '\n' '\0' <"$work/files" | LC_ALL=C.UTF-8 xargs -0 grep -sHnE '^.{121}' |
       sed 's/^\([^:]*:[0-9]*\):.*/\1: longer than 120 columns/' >"$work/found"

@@ -1,5 +1,6 @@
-# Input: nm -A -P -g. Prints unit TAB unit TAB symbol where one object file uses what another defines. A unit is named by its
-# source, as CMake names objects: build/CMakeFiles/TARGET.dir/src/gl/gpu.c.o and lib.a[gpu.c.o] come from gl/gpu and gpu.
+# Input: nm -A -P -g. Prints unit TAB unit TAB symbol where one object file uses what another defines. A unit is named
+# by its source, as CMake names objects: build/CMakeFiles/TARGET.dir/src/gl/gpu.c.o and lib.a[gpu.c.o] come from gl/gpu
+# and gpu.
 function unit(object) {
   if (object ~ /\]$/) gsub(/^.*\[|\]$/, "", object)
   sub(/CMakeFiles\/[^\/]*\.dir\//, "", object)
