@@ -8,8 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/message.h"
 #include "host/shader_cache.h"
-#include "message.h"
 
 /* Ways to a display: one for each EGL device, and what is left where devices cannot be enumerated. */
 enum { CANDIDATES_MAX = 32 };

@@ -1,5 +1,5 @@
 #define _GNU_SOURCE /* pipe2 */
-#include "import.h"
+#include "scene/import.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -15,10 +15,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "image.h"
-#include "interrupt.h"
-#include "message.h"
-#include "scene_parts.h"
+#include "base/interrupt.h"
+#include "base/message.h"
+#include "files/image.h"
+#include "scene/scene_parts.h"
 
 /* What an import may take. A binary STL has 50 bytes a triangle and no format that people use has fewer than 16, so
  * the memory allows the 1 KB a triangle that importing is meant to stay under; the time is many times what the

@@ -1,4 +1,4 @@
-#include "import_child.h"
+#include "scene/import_child.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#include "scene/scene.h"
 
 enum { MESH_NOT_SENT = -2, MESH_EMPTY = -1, NODE_DEPTH_MAX = 4096 };
 struct sent_mesh {
@@ -62,7 +64,7 @@ static int to_columns(const struct aiMatrix4x4 *m, int up_is_z, float out[16]) {
     out[4 * column + 3] = column == 3;
   }
   for (int i = 0; i < 16; i++)
-    if (!isfinite(out[i]) || fabsf(out[i]) > 1e15f) return 0;
+    if (!isfinite(out[i]) || fabsf(out[i]) > (float)COORDINATE_MAX) return 0;
   return m->d1 == 0 && m->d2 == 0 && m->d3 == 0 && m->d4 == 1;
 }
 
@@ -113,15 +115,15 @@ static void describe_dropped(const struct importer *importer, char *text, size_t
   const struct {
     uint64_t count;
     const char *one, *many;
-  } rows[] = {{importer->dropped_nan, "triangle with a coordinate that is not finite",
-               "triangles with coordinates that are not finite"},
-              {importer->dropped_far, "triangle with a coordinate beyond 1e15",
-               "triangles with coordinates beyond 1e15"},
-              {importer->dropped_area, "triangle without area", "triangles without area"},
-              {importer->dropped_index, "triangle with a corner that does not exist",
-               "triangles with corners that do not exist"},
-              {importer->dropped_instances, "mesh placed with an unusable transform",
-               "meshes placed with unusable transforms"}};
+  } rows[] = {
+      {importer->dropped_nan, "triangle with a coordinate that is not finite",
+       "triangles with coordinates that are not finite"},
+      {importer->dropped_far, "triangle with a coordinate beyond 1e15", "triangles with coordinates beyond 1e15"},
+      {importer->dropped_area, "triangle without area", "triangles without area"},
+      {importer->dropped_index, "triangle with a corner that does not exist",
+       "triangles with corners that do not exist"},
+      {importer->dropped_instances, "mesh placed with an unusable transform",
+       "meshes placed with unusable transforms"}};
   *text = 0;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     if (!rows[i].count) continue;

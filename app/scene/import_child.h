@@ -6,7 +6,7 @@
 #include <assimp/scene.h>
 #include <stdint.h>
 
-#include "import.h"
+#include "scene/import.h"
 
 struct importer {
   int fd;

@@ -9,9 +9,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "image.h"
-#include "import_child.h"
-#include "scene.h"
+#include "files/image.h"
+#include "scene/import_child.h"
+#include "scene/scene.h"
 
 /* Where a material's holes are: which texture, which of its values, scaled by what. */
 struct alpha_source {

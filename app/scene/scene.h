@@ -12,6 +12,9 @@
 
 #include "penumbra/penumbra.h"
 
+/* The largest coordinate anywhere, so that squares of distances stay finite floats. */
+#define COORDINATE_MAX 1e15
+
 /* An alpha texture: one byte a texel, row 0 at v = 0 (the bottom), as OpenGL wants it. Sampled bilinearly from this one
  * level, so that a ray tracer and the GPU see the same holes: texture_alpha is the definition. */
 enum texture_wrap { WRAP_REPEAT = 0, WRAP_CLAMP, WRAP_MIRROR };

@@ -1,4 +1,4 @@
-#include "scene_json.h"
+#include "scene/scene_json.h"
 
 #include <errno.h>
 #include <math.h>
@@ -7,10 +7,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "image.h"
-#include "message.h"
-#include "names.h"
-#include "option_values.h"
+#include "base/message.h"
+#include "base/names.h"
+#include "files/image.h"
 #include "scene/vector.h"
 
 enum { SETUP_FILE_MAX = 64 << 20 };

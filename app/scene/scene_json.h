@@ -4,7 +4,7 @@
 
 #include <cjson/cJSON.h>
 
-#include "scene.h"
+#include "scene/scene.h"
 
 /* NULL: out of memory. The caller adds it to its own object or deletes it. */
 cJSON *scene_to_json(const struct scene *scene);

@@ -2,7 +2,7 @@
 #ifndef PENUMBRA_APP_SCENE_PARTS_H
 #define PENUMBRA_APP_SCENE_PARTS_H
 
-#include "scene.h"
+#include "scene/scene.h"
 
 struct scene *scene_new(const char *name); /* NULL: out of memory, nothing printed */
 void mesh_free(struct mesh *mesh);

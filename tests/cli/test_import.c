@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "image.h"
+#include "files/image.h"
 #include "scene/scene.h"
 #include "scene/vector.h"
 
