@@ -6,6 +6,7 @@
 #include "base/message.h"
 #include "base/names.h"
 #include "commands/commands.h"
+#include "scene/import_process.h"
 
 static int unknown_command(const char *typed) {
   const char *names[COMMAND_COUNT];
@@ -56,6 +57,7 @@ static int finish(int status) {
 }
 
 int main(int argc, char **argv) {
+  import_serve(argc, argv);
   interrupt_install();
   if (argc < 2) {
     print_help(stderr, NULL);

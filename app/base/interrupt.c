@@ -8,17 +8,15 @@
 #include "base/progress.h"
 
 /* The handler ends the process itself: GL calls and model imports can run for many seconds without returning to a
- * loop that could look at a flag. It uses async-signal-safe calls only. */
+ * loop that could look at a flag. It uses async-signal-safe calls only. An import's process ends with this one. */
 enum { FILES_MAX = 16 };
 static const char *volatile files[FILES_MAX];
 static const char *volatile folder;
-static volatile sig_atomic_t child;
 
 static void stop(int signal_number) {
   for (int i = 0; i < FILES_MAX; i++)
     if (files[i]) unlink(files[i]);
   if (folder) rmdir(folder); /* fails where something is in it */
-  if (child > 0) kill((pid_t)child, SIGKILL);
   if (progress_visible()) {
     static const char wipe[] = "\r\033[K";
     ssize_t ignored = write(STDERR_FILENO, wipe, sizeof wipe - 1);
@@ -53,5 +51,3 @@ void interrupt_forget_file(const char *path) {
 }
 
 void interrupt_watch_folder(const char *path) { folder = path; }
-
-void interrupt_watch_child(pid_t pid) { child = (sig_atomic_t)pid; }

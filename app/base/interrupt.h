@@ -2,8 +2,6 @@
 #ifndef PENUMBRA_APP_BASE_INTERRUPT_H
 #define PENUMBRA_APP_BASE_INTERRUPT_H
 
-#include <sys/types.h>
-
 void interrupt_install(void);
 
 /* A file to remove when interrupted. The path must stay valid until it is forgotten. Not for use by several threads. */
@@ -12,8 +10,5 @@ void interrupt_forget_file(const char *path);
 
 /* A folder to remove when interrupted, if nothing is in it by then; NULL: none. */
 void interrupt_watch_folder(const char *path);
-
-/* The import's process, killed when interrupted; 0: none. */
-void interrupt_watch_child(pid_t child);
 
 #endif

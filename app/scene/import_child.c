@@ -3,40 +3,17 @@
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
-#include <errno.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "scene/import_material.h"
+#include "scene/import_mesh.h"
 #include "scene/scene.h"
 
+/* In place of a mesh's number. */
 enum { MESH_NOT_SENT = -2, MESH_EMPTY = -1, NODE_DEPTH_MAX = 4096 };
-struct sent_mesh {
-  int number; /* in the scene */
-};
-
-void send_bytes(int fd, const void *bytes, size_t size) {
-  for (size_t done = 0; done < size;) {
-    ssize_t n = write(fd, (const char *)bytes + done, size - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) _exit(1);
-    done += (size_t)n;
-  }
-}
-
-void send_text(int fd, enum record_tag tag, const char *format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  struct record r = {.tag = tag, .text_size = (uint32_t)strlen(text)};
-  send_bytes(fd, &r, sizeof r);
-  send_bytes(fd, text, r.text_size);
-}
 
 static const struct aiScene *read_model(const char *path) {
   struct aiPropertyStore *settings = aiCreatePropertyStore();
@@ -88,14 +65,14 @@ static void send_instance(struct importer *importer, unsigned mesh_index, const 
     return;
   }
   const struct aiMesh *mesh = importer->model->mMeshes[mesh_index];
-  struct sent_mesh *sent = &importer->sent[mesh_index];
-  if (sent->number == MESH_NOT_SENT) {
+  int *sent = &importer->sent[mesh_index];
+  if (*sent == MESH_NOT_SENT) {
     static const struct material_alpha opaque = {.texture = -1};
     int known = importer->alphas && mesh->mMaterialIndex < importer->model->mNumMaterials;
-    sent->number = send_mesh(importer, mesh, known ? &importer->alphas[mesh->mMaterialIndex] : &opaque);
+    *sent = send_mesh(importer, mesh, known ? &importer->alphas[mesh->mMaterialIndex] : &opaque);
   }
-  if (sent->number == MESH_EMPTY) return;
-  r.mesh = sent->number;
+  if (*sent == MESH_EMPTY) return;
+  r.mesh = *sent;
   send_bytes(importer->fd, &r, sizeof r);
   importer->instance_count++;
 }
@@ -175,7 +152,7 @@ void import_child(const char *path, int up_is_z, int fd) {
   unsigned count = importer.model->mNumMeshes;
   importer.sent = malloc((count + 1) * sizeof *importer.sent);
   if (!importer.sent) return;
-  for (unsigned i = 0; i < count; i++) importer.sent[i].number = MESH_NOT_SENT;
+  for (unsigned i = 0; i < count; i++) importer.sent[i] = MESH_NOT_SENT;
   send_materials(&importer);
   struct aiMatrix4x4 identity;
   aiIdentityMatrix4(&identity);

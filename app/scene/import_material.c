@@ -1,3 +1,5 @@
+#include "scene/import_material.h"
+
 #include <assimp/GltfMaterial.h>
 #include <assimp/cimport.h>
 #include <assimp/material.h>
@@ -10,7 +12,6 @@
 #include <unistd.h>
 
 #include "files/image.h"
-#include "scene/import_child.h"
 #include "scene/scene.h"
 
 /* Where a material's holes are: which texture, which of its values, scaled by what. */

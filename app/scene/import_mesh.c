@@ -1,10 +1,11 @@
+#include "scene/import_mesh.h"
+
 #include <assimp/mesh.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "scene/import_child.h"
 #include "scene/scene.h"
 #include "scene/vector.h"
 

@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "base/message.h"
+#include "scene/import.h"
 #include "scene/scene_parts.h"
 
 /* With --split what casts does not receive. */

@@ -94,8 +94,8 @@ struct scene_request {
 };
 
 /* Loads or builds the scene with its ground, its standard set-up (contract: B and H) applied. On failure *out is
- * NULL, one line was printed, and the exit status is returned. Must be called before any thread or GL context
- * exists: the import forks. */
+ * NULL, one line was printed, and the exit status is returned. On any thread, also on several at once, once main has
+ * called import_serve (scene/import_process.h). */
 int scene_load(const struct scene_request *request, struct scene **out);
 void scene_free(struct scene **scene); /* clears the handle; NULL and a NULL handle are fine */
 

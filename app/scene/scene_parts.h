@@ -14,9 +14,6 @@ void instance_bounds(const struct scene *scene, const struct instance *instance,
 /* Computes bounds and triangle_count anew. */
 void scene_measure(struct scene *scene);
 
-/* The model file, without ground and set-up. Exit status; prints one line on failure. */
-int import_model(const char *path, int up_is_z, struct scene **out);
-
 /* builtin:NAME without its prefix, with floor and its own light and camera. */
 int builtin_build(const char *name, struct scene **out);
 
