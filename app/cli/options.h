@@ -47,7 +47,7 @@ enum option {
 enum { LIGHT_COUNTS_MAX = 8, LIGHTS_MAX = 64 };
 
 /* What was asked for. Strings point into argv. Values of options that were not given hold the contract's defaults,
- * those of the set-up excepted: they come from the scene, and options_apply lays the given ones over it. */
+ * those of the set-up excepted: they come from the scene, and options_scene lays the given ones over it. */
 struct options {
   unsigned char given[OPTION_COUNT];
   const char **techniques; /* specs, already checked with pn_technique_parse */
@@ -67,9 +67,6 @@ struct options {
 int options_parse(struct options *options, enum command command, int argc, char **argv);
 void options_free(struct options *options);
 
-/* Lays the given set-up options over the scene's own. */
-void options_apply(const struct options *options, struct setup *setup);
-
 /* Where people read what a command did: with the JSON on standard output, their lines make room for it. */
 FILE *options_people(const struct options *options);
 
@@ -77,7 +74,7 @@ FILE *options_people(const struct options *options);
 void options_print(FILE *file, enum command command);
 
 /* The scene that the options describe, with --setup's scene block and all options applied and checked: scene_load,
- * setup_apply_json, options_apply, setup_finish. name NULL: options->positionals[0]. Exit status. */
+ * setup_apply_json, the options, setup_finish. name NULL: options->positionals[0]. Exit status. */
 int options_scene(const struct options *options, const char *name, struct scene **out);
 
 #endif

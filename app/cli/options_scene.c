@@ -5,6 +5,7 @@
 #include "base/message.h"
 #include "cli/options.h"
 #include "scene/scene_json.h"
+#include "scene/setup.h"
 #include "scene/vector.h"
 
 static const double degrees = 180 / 3.14159265358979323846;
@@ -21,7 +22,8 @@ static void change_shape(struct light *light, pn_light_shape shape) {
   light->shape = shape;
 }
 
-void options_apply(const struct options *o, struct setup *setup) {
+/* Lays the given set-up options over the scene's own. */
+static void options_apply(const struct options *o, struct setup *setup) {
   const struct setup *from = &o->setup;
   if (o->given[OPTION_LIGHT]) change_shape(&setup->light, from->light.shape);
 #define APPLY(option, field) \

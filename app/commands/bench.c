@@ -10,6 +10,7 @@
 #include "experiment/measure.h"
 #include "experiment/result.h"
 #include "files/output.h"
+#include "scene/setup.h"
 #include "scene/vector.h"
 
 static const char default_scene[] = "builtin:balls", cheapest_technique[] = "hard";

@@ -7,9 +7,9 @@
 #include "commands/outputs.h"
 #include "experiment/experiment.h"
 #include "experiment/result.h"
-#include "files/image.h"
 #include "files/label.h"
 #include "files/output.h"
+#include "files/picture.h"
 #include "host/shade.h"
 
 static const char *const default_techniques[] = {PN_TECHNIQUE_DEFAULT};

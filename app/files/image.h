@@ -34,7 +34,4 @@ int png_decode(const void *bytes, size_t size, int *width, int *height, uint8_t 
 uint8_t srgb_byte(float linear);
 void srgb_bytes(const float *linear, size_t count, uint8_t *out);
 
-/* Writes linear RGB as the ending of path says: sRGB PNG or EXR. Exit status. */
-int picture_write(const char *path, int width, int height, const float *rgb);
-
 #endif

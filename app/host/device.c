@@ -229,5 +229,3 @@ const char *device_renderer(const struct device *device) { return device->render
 const char *device_version(const struct device *device) { return device->version; }
 
 int device_number(const struct device *device) { return device->number; }
-
-int device_is_software(const struct device *device) { return device->software; }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "scene/setup.h"
 #include "scene/vector.h"
 
 static const float background = 0.05f, ambient = 0.02f;

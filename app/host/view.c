@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/message.h"
+#include "scene/setup.h"
 #include "scene/vector.h"
 
 /* eye = P^-1 (pixel, depth), scene = V^-1 eye, in double from the very matrices the library is given. V is a

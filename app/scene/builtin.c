@@ -7,7 +7,7 @@
 #include "base/message.h"
 #include "base/names.h"
 #include "scene/builtin_scenes.h"
-#include "scene/scene_parts.h"
+#include "scene/setup.h"
 
 const struct builtin builtins[] = {
     {"square", "a square parallel to the light over a plane: its shadow has a closed form", build_square, 0, 0},

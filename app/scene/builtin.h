@@ -15,4 +15,7 @@ struct builtin {
 extern const struct builtin builtins[];
 extern const int builtin_count;
 
+/* builtin:NAME without its prefix, with floor and its own light and camera. Exit status; prints one line on failure. */
+int builtin_build(const char *name, struct scene **out);
+
 #endif

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "scene/builtin_scenes.h"
-#include "scene/scene_parts.h"
 #include "scene/shape.h"
 
 static void bar(struct shape *shape, double x0, double y0, double x1, double y1, double z, double thickness) {

@@ -1,8 +1,9 @@
+#include "scene/ground.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/message.h"
-#include "scene/scene_parts.h"
 
 int ground_add(struct scene *scene) {
   double half = 2.5 * scene_extent(scene);

@@ -13,7 +13,6 @@
 #include "files/image.h"
 #include "scene/import_process.h"
 #include "scene/import_records.h"
-#include "scene/scene_parts.h"
 
 static int check_file(const char *path, struct stat *info) {
   if (stat(path, info) != 0) return input_error("%s: %s", path, strerror(errno));

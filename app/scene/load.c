@@ -1,8 +1,12 @@
+#include "scene/load.h"
+
 #include <string.h>
 
 #include "base/message.h"
+#include "scene/builtin.h"
+#include "scene/ground.h"
 #include "scene/import.h"
-#include "scene/scene_parts.h"
+#include "scene/setup.h"
 
 /* With --split what casts does not receive. */
 static int split(struct scene *scene) {

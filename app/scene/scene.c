@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/scene_parts.h"
 #include "scene/vector.h"
 
 void mesh_free(struct mesh *mesh) {

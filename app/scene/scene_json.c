@@ -14,7 +14,8 @@
 
 enum { SETUP_FILE_MAX = 64 << 20 };
 
-cJSON *json_numbers(const double *values, int count) {
+/* What is not finite becomes null. NULL: out of memory. */
+static cJSON *json_numbers(const double *values, int count) {
   cJSON *array = cJSON_CreateArray();
   for (int i = 0; i < count && array; i++)
     cJSON_AddItemToArray(array, isfinite(values[i]) ? cJSON_CreateNumber(values[i]) : cJSON_CreateNull());

@@ -1,8 +1,9 @@
+#include "scene/setup.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "base/message.h"
-#include "scene/scene_parts.h"
 #include "scene/vector.h"
 
 static const double pi = 3.14159265358979323846;

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/scene_parts.h"
 #include "scene/vector.h"
 
 static void *grown(void *array, uint32_t *room, uint32_t needed, size_t element) {

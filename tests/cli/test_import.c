@@ -17,7 +17,7 @@
 #include "files/image.h"
 #include "host/device.h"
 #include "scene/import_process.h"
-#include "scene/scene.h"
+#include "scene/load.h"
 #include "scene/vector.h"
 
 static char folder[] = "/tmp/penumbra-import-XXXXXX";

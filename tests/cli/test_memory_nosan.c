@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "scene/import_process.h"
-#include "scene/scene.h"
+#include "scene/load.h"
 
 enum { SIDE = 708, TRIANGLES = 2 * SIDE * SIDE }; /* 1,002,528 */
 
