@@ -83,9 +83,9 @@ static char executable[PATH_MAX];
 /* The link in /proc leads to the very file, even one that was replaced or removed since. Where there is no /proc: the
  * path that the kernel was given, made absolute before anybody changes the directory. */
 static void find_executable(void) {
-  static const char link[] = "/proc/self/exe";
+  static const char self[] = "/proc/self/exe";
   const char *path = (const char *)getauxval(AT_EXECFN);
-  if (access(link, X_OK) == 0) memcpy(executable, link, sizeof link);
+  if (access(self, X_OK) == 0) memcpy(executable, self, sizeof self);
   else if (!path || !realpath(path, executable)) executable[0] = 0;
 }
 
