@@ -2,43 +2,32 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/interrupt.h"
+#include "base/message.h"
+#include "base/names.h"
 #include "commands/commands.h"
-#include "interrupt.h"
-#include "message.h"
-#include "names.h"
-
-const struct command_row commands[] = {
-    {"render", COMMAND_RENDER, command_render, 1, 1, "SCENE [options]", "one picture of SCENE under one technique"},
-    {"compare", COMMAND_COMPARE, command_compare, 1, 1, "SCENE [options]", "several techniques against the reference"},
-    {"study", COMMAND_STUDY, command_missing, 0, 1000, "NAME... | all",
-     "the papers' experiments, as CSV, plots and a report (not in this version)"},
-    {"bench", COMMAND_BENCH, command_bench, 0, 1, "[SCENE] [options]", "stage times"},
-    {"view", COMMAND_VIEW, command_missing, 0, 1, "[SCENE] [options]", "interactive window (not in this version)"},
-    {"list", COMMAND_LIST, command_list, 0, 1, "[techniques|scenes|studies]",
-     "what there is to choose from; --verbose: with parameters"},
-    {"info", COMMAND_INFO, command_info, 0, 0, "", "GL devices, limits, which accelerations are in use"},
-    {"help", COMMAND_HELP, command_help, 0, 1, "[COMMAND|TECHNIQUE]",
-     "this, a command's options, a technique's parameters"},
-};
-const int command_count = sizeof commands / sizeof *commands;
-
-const struct command_row *command_find(const char *name) {
-  for (int i = 0; i < command_count; i++)
-    if (strcmp(commands[i].name, name) == 0) return &commands[i];
-  return NULL;
-}
-
-int command_missing(const struct options *o) {
-  (void)o;
-  return input_error("this command is not available in this version");
-}
+#include "scene/import_process.h"
 
 static int unknown_command(const char *typed) {
-  const char *names[sizeof commands / sizeof *commands];
+  const char *names[COMMAND_COUNT];
   char hint[80];
-  for (int i = 0; i < command_count; i++) names[i] = commands[i].name;
+  for (int i = 0; i < COMMAND_COUNT; i++) names[i] = commands[i].name;
   return input_error("unknown command '%s'; %s", typed,
-                     nearest_name(typed, names, command_count, hint, sizeof hint) ? hint : "penumbra help lists them");
+                     nearest_name(typed, names, COMMAND_COUNT, hint, sizeof hint) ? hint : "penumbra help lists them");
+}
+
+static int run_command(const struct command_row *command, const struct options *o) {
+  switch (command->bit) {
+  case COMMAND_RENDER: return command_render(o);
+  case COMMAND_COMPARE: return command_compare(o);
+  case COMMAND_BENCH: return command_bench(o);
+  case COMMAND_LIST: return command_list(o);
+  case COMMAND_INFO: return command_info(o);
+  case COMMAND_HELP: return command_help(o);
+  case COMMAND_STUDY:
+  case COMMAND_VIEW: break;
+  }
+  return input_error("this command is not available in this version");
 }
 
 static int run_options(const struct command_row *command, const struct options *o) {
@@ -50,7 +39,7 @@ static int run_options(const struct command_row *command, const struct options *
     return input_error("%s needs %s; penumbra help %s says more", command->name, command->arguments, command->name);
   if (o->positional_count > command->positionals_most)
     return input_error("%s: '%s' is one argument too many", command->name, o->positionals[command->positionals_most]);
-  return command->run(o);
+  return run_command(command, o);
 }
 
 static int run(const struct command_row *command, int argc, char **argv) {
@@ -68,6 +57,7 @@ static int finish(int status) {
 }
 
 int main(int argc, char **argv) {
+  import_serve(argc, argv);
   interrupt_install();
   if (argc < 2) {
     print_help(stderr, NULL);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gl/device.h"
 #include "gl/host.h"
 #include "gl/label.h"
 #include "gl/program.h"

@@ -1,6 +1,7 @@
 /* pn_maps_update: what casts, fitted and drawn. */
 #include <string.h>
 
+#include "gl/device.h"
 #include "gl/host.h"
 #include "light.h"
 #include "maps/maps.h"

@@ -1,6 +1,7 @@
 /* From maps to visibility buffers: into the library's own images or the host's, and what can be looked at on the way. */
 #include <string.h>
 
+#include "gl/device.h"
 #include "gl/host.h"
 #include "gl/inspect.h"
 #include "light.h"

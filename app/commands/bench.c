@@ -2,16 +2,18 @@
  * touches no pixel. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "claims.h"
+#include "base/message.h"
 #include "commands/commands.h"
-#include "host/measure.h"
-#include "json_file.h"
-#include "message.h"
-#include "output.h"
+#include "commands/outputs.h"
+#include "experiment/choice.h"
+#include "experiment/measure.h"
+#include "experiment/result.h"
+#include "files/output.h"
+#include "scene/setup.h"
+#include "scene/vector.h"
 
-static const char default_scene[] = "builtin:balls", cheapest_technique[] = "hard", slowest_technique[] = "average";
+static const char default_scene[] = "builtin:balls", cheapest_technique[] = "hard";
 
 struct bench {
   const struct options *options;
@@ -26,10 +28,10 @@ struct bench {
 static int place_light(const struct light *own, int index, int count, struct light *out) {
   *out = *own;
   if (index == 0) return STATUS_OK;
-  double angle = 2 * 3.14159265358979323846 * index / count, distance = 0;
-  for (int k = 0; k < 3; k++) distance += (own->target[k] - own->center[k]) * (own->target[k] - own->center[k]);
-  distance = sqrt(distance);
-  for (int k = 0; k < 3; k++) out->center[k] += 0.35 * distance * (cos(angle) * own->u[k] + sin(angle) * own->v[k]);
+  double angle = 2 * 3.14159265358979323846 * index / count, toward[3];
+  v3_sub(own->target, own->center, toward);
+  double reach = 0.35 * v3_length(toward);
+  for (int k = 0; k < 3; k++) out->center[k] += reach * (cos(angle) * own->u[k] + sin(angle) * own->v[k]);
   return light_finish(out);
 }
 
@@ -51,7 +53,8 @@ static void print_table(const struct bench *b, const struct contestant *c, int l
     const struct timing *t = &c[i].timing;
     fprintf(b->people, "%-28s %10.2f %8.2f %9.2f %9.2f %7d ", b->specs[i], t->median, t->median / c[0].timing.median,
             t->min, t->max, t->frames);
-    for (int s = 0; s < t->stage_count; s++) fprintf(b->people, " %s %.2f", t->stages[s].name, t->stages[s].median);
+    for (int s = 0; s < t->stage_count; s++)
+      fprintf(b->people, " %s %.2f", t->stages[s].name, t->stages[s].milliseconds);
     fputc('\n', b->people);
   }
   fflush(b->people);
@@ -62,12 +65,11 @@ static void add_results(struct bench *b, const struct contestant *c, int lights)
   cJSON *results = cJSON_GetObjectItem(b->json, "results");
   if (!results) results = cJSON_AddArrayToObject(b->json, "results");
   for (int i = 0; i < b->spec_count; i++) {
-    cJSON *result = cJSON_CreateObject();
+    cJSON *result = result_technique(b->specs[i]);
     cJSON_AddItemToArray(results, result);
-    add_technique(result, b->specs[i]);
     cJSON_AddNumberToObject(result, "lights", lights);
     cJSON_AddNumberToObject(result, "ratio", c[i].timing.median / c[0].timing.median);
-    cJSON_AddItemToObject(result, "time_ms", timing_to_json(&c[i].timing));
+    cJSON_AddItemToObject(result, "time_ms", result_times(&c[i].timing));
   }
 }
 
@@ -97,8 +99,8 @@ static void report(struct bench *b, const char *key, const char *text, const str
   fprintf(b->people, "%s\n", text);
   if (!b->json) return;
   cJSON *object = cJSON_AddObjectToObject(b->json, key);
-  cJSON_AddItemToObject(object, "hard_ms", timing_to_json(a));
-  cJSON_AddItemToObject(object, "other_ms", timing_to_json(other));
+  cJSON_AddItemToObject(object, "hard_ms", result_times(a));
+  cJSON_AddItemToObject(object, "other_ms", result_times(other));
   if (isfinite(value)) cJSON_AddNumberToObject(object, "share", value);
   else cJSON_AddNullToObject(object, "share");
 }
@@ -161,19 +163,6 @@ static int bench_untouched(struct bench *b) {
   return status;
 }
 
-static int choose_techniques(struct bench *b) {
-  int all = pn_technique_count();
-  b->specs = calloc((size_t)(b->options->technique_count + all) + 1, sizeof *b->specs);
-  if (!b->specs) return memory_error();
-  b->spec_count = b->options->technique_count;
-  for (int i = 0; i < b->spec_count; i++) b->specs[i] = b->options->techniques[i];
-  if (b->spec_count) return STATUS_OK;
-  /* The brute-force one takes seconds a frame: whoever wants it names it. */
-  for (int i = 0; i < all; i++)
-    if (strcmp(pn_technique_at(i)->name, slowest_technique) != 0) b->specs[b->spec_count++] = pn_technique_at(i)->name;
-  return STATUS_OK;
-}
-
 static void print_head(const struct bench *b) {
   const struct scene *scene = b->host.scene;
   const struct setup *setup = &scene->setup;
@@ -184,27 +173,24 @@ static void print_head(const struct bench *b) {
 
 static int run_bench(struct bench *b) {
   const struct options *o = b->options;
-  int status = choose_techniques(b);
-  if (!status && o->json) {
-    b->json = result_begin(&b->host);
-    if (!b->json) status = memory_error();
-  }
-  if (!status) print_head(b);
+  b->specs = technique_choice(o->techniques, o->technique_count, &b->spec_count);
+  if (!b->specs) return STATUS_FAILED;
+  if (o->json) b->json = result_begin(&b->host);
+  if (o->json && !b->json) return memory_error();
+  print_head(b);
+  int status = STATUS_OK;
   for (int i = 0; i < o->light_count_count && !status; i++) status = bench_techniques(b, o->light_counts[i]);
   if (!status) status = bench_state(b);
   if (!status) status = bench_untouched(b);
   if (!status && b->json) {
-    status = json_write(o->json, b->json);
+    status = write_result(o, b->json);
     b->json = NULL;
-    if (!status && b->people == stdout) puts(o->json);
   }
-  cJSON_Delete(b->json);
-  free(b->specs);
   return status;
 }
 
 int command_bench(const struct options *o) {
-  struct bench b = {.options = o, .people = o->json && strcmp(o->json, "-") == 0 ? stderr : stdout};
+  struct bench b = {.options = o, .people = options_people(o)};
   struct scene *scene = NULL;
   struct claims claims = {NULL, 0};
   int status = claim_options(&claims, o);
@@ -213,6 +199,8 @@ int command_bench(const struct options *o) {
   if (!status) status = options_scene(o, o->positional_count ? o->positionals[0] : default_scene, &scene);
   if (!status) status = host_open(scene, o->device, &b.host);
   if (!status) status = run_bench(&b);
+  cJSON_Delete(b.json);
+  free(b.specs);
   host_close(&b.host);
   scene_free(&scene);
   return status;

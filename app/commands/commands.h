@@ -1,19 +1,9 @@
 /* commands.h: one function a command; each answers with the exit status. */
-#ifndef PENUMBRA_APP_COMMANDS_H
-#define PENUMBRA_APP_COMMANDS_H
+#ifndef PENUMBRA_APP_COMMANDS_COMMANDS_H
+#define PENUMBRA_APP_COMMANDS_COMMANDS_H
 
-#include "options.h"
-
-struct command_row {
-  const char *name;
-  enum command bit;
-  int (*run)(const struct options *options);
-  int positionals_least, positionals_most;
-  const char *arguments, *summary;
-};
-
-extern const struct command_row commands[];
-extern const int command_count;
+#include "cli/command.h"
+#include "cli/options.h"
 
 int command_render(const struct options *options);
 int command_compare(const struct options *options);
@@ -21,9 +11,6 @@ int command_bench(const struct options *options);
 int command_list(const struct options *options);
 int command_info(const struct options *options);
 int command_help(const struct options *options);
-int command_missing(const struct options *options); /* not available in this version */
-
-const struct command_row *command_find(const char *name); /* NULL: none */
 
 /* What `penumbra help COMMAND` prints; NULL: the overview. */
 void print_help(FILE *file, const struct command_row *command);

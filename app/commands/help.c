@@ -1,9 +1,9 @@
 /* penumbra help: the overview, a command's options, a technique's table. */
 #include <string.h>
 
+#include "base/message.h"
+#include "base/names.h"
 #include "commands/commands.h"
-#include "message.h"
-#include "names.h"
 
 enum { PARAMETERS_MAX = 64, LINE_MAX_TEXT = 100 };
 
@@ -35,7 +35,8 @@ static void print_preset(FILE *file, const pn_technique *technique, const pn_par
 
 void print_technique(FILE *file, const pn_technique *technique) {
   fprintf(file, "%s: %s\n  %s\n", technique->name, technique->title, technique->help);
-  if (technique->needs_meshes) fputs("  needs triangle meshes: what draw callbacks draw casts a hard shadow at most\n", file);
+  if (technique->needs_meshes)
+    fputs("  needs triangle meshes: what draw callbacks draw casts a hard shadow at most\n", file);
   if (technique->needs_closed) fputs("  casters should be closed surfaces\n", file);
   if (!technique->self_shadows) fputs("  casters do not shadow themselves\n", file);
   if (!technique->parameter_count) fputs("  no parameters\n", file);
@@ -49,8 +50,8 @@ void print_technique(FILE *file, const pn_technique *technique) {
     } else if (p->type == PN_BOOL) {
       snprintf(values, sizeof values, "on|off");
     } else {
-      snprintf(values, sizeof values, "%s%s%g..%g%s%s", p->choices ? p->choices[0] : "", p->choices ? "|" : "", p->least,
-               p->most, *p->unit ? " " : "", p->unit);
+      snprintf(values, sizeof values, "%s%s%g..%g%s%s", p->choices ? p->choices[0] : "", p->choices ? "|" : "",
+               p->least, p->most, *p->unit ? " " : "", p->unit);
     }
     fprintf(file, "  %s=%s  default %s\n      %s%s%s%s\n", p->name, values, initial, p->help, *p->source ? " (" : "",
             p->source, *p->source ? ")" : "");
@@ -67,7 +68,7 @@ void print_help(FILE *file, const struct command_row *command) {
   }
   fprintf(file, "penumbra %s: real-time soft shadows from area lights, measured against ray-traced truth\n\n",
           pn_version());
-  for (int i = 0; i < command_count; i++)
+  for (int i = 0; i < COMMAND_COUNT; i++)
     fprintf(file, "  penumbra %-8s%-20s  %s\n", commands[i].name, commands[i].arguments, commands[i].summary);
   fputs("  penumbra --version\n\n"
         "SCENE is a model file (glTF, OBJ, PLY, STL, FBX and whatever else Assimp reads) or builtin:NAME.\n"
@@ -87,7 +88,7 @@ int command_help(const struct options *o) {
   else if (technique) print_technique(stdout, technique);
   if (command || technique) return STATUS_OK;
   int count = 0;
-  for (int i = 0; i < command_count; i++) names[count++] = commands[i].name;
+  for (int i = 0; i < COMMAND_COUNT; i++) names[count++] = commands[i].name;
   for (int i = 0; i < pn_technique_count() && count < 128; i++) names[count++] = pn_technique_at(i)->name;
   char hint[80];
   return input_error("help: '%s' is neither a command nor a technique; %s", topic,

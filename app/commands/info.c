@@ -1,9 +1,9 @@
 /* penumbra info: GL devices, the chosen one's limits, and which optional features are in use. */
 #include <string.h>
 
+#include "base/message.h"
 #include "commands/commands.h"
 #include "host/device.h"
-#include "message.h"
 
 static void print_devices(void) {
   enum { DEVICES_MAX = 32 };

@@ -1,9 +1,9 @@
 /* penumbra list: what there is to choose from, one a line, the name first. */
 #include <string.h>
 
+#include "base/message.h"
+#include "base/names.h"
 #include "commands/commands.h"
-#include "message.h"
-#include "names.h"
 #include "scene/builtin.h"
 
 static void list_techniques(int verbose) {

@@ -2,115 +2,61 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "claims.h"
+#include "base/message.h"
 #include "commands/commands.h"
-#include "host/measure.h"
+#include "commands/outputs.h"
+#include "experiment/experiment.h"
+#include "experiment/result.h"
+#include "files/label.h"
+#include "files/output.h"
+#include "files/picture.h"
 #include "host/shade.h"
-#include "json_file.h"
-#include "label.h"
-#include "message.h"
-#include "output.h"
-#include "save.h"
 
-static const char default_technique[] = PN_TECHNIQUE_DEFAULT;
+static const char *const default_techniques[] = {PN_TECHNIQUE_DEFAULT};
 
-struct picture {
-  const char *spec;
-  char *path;
-  pn_light *light;
+struct rendering {
+  const struct options *options;
+  const char *const *specs;
+  char **paths; /* of the pictures */
+  int count;
+  struct claims claims;
+  struct scene *scene;
+  struct experiment experiment;
+  float *rgb;
+  FILE *people;
 };
 
-static int claim_buffers(const struct options *o, struct claims *claims) {
-  int status = STATUS_OK;
-  for (int i = 0; o->save_dir && !status && (i < o->technique_count || i == 0); i++) {
-    char *name = save_name(i, o->technique_count ? o->techniques[i] : default_technique);
-    char *soft = name ? save_name_inside(name, "ssm") : NULL;
-    status = soft ? claim_saved(claims, o->save_dir, name) : memory_error();
-    if (!status) status = claim_saved(claims, o->save_dir, soft);
-    free(name);
-    free(soft);
-  }
+/* ---- before the work: what can be wrong with the request --------------------------------------------------------- */
+
+static int claim_files(struct rendering *r) {
+  const struct options *o = r->options;
+  int status = claim_options(&r->claims, o);
+  for (int i = 0; i < r->count && o->save_dir && !status; i++)
+    status = claim_technique(&r->claims, o->save_dir, i, r->specs[i], 1 << INSIDE_SOFT);
   return status;
 }
 
-static int claim_picture(const struct picture *picture, struct claims *claims) {
+static int claim_picture(struct rendering *r, int index) {
   char what[120];
-  snprintf(what, sizeof what, "the picture of %.80s", picture->spec);
-  return claim_write(claims, what, picture->path);
+  snprintf(what, sizeof what, "the picture of %.80s", r->specs[index]);
+  return claim_write(&r->claims, what, r->paths[index]);
 }
 
 /* A fixed order of work: what can be wrong with the outputs is found before anything is drawn. */
-static int name_pictures(const struct options *o, const struct scene *scene, struct claims *claims,
-                         struct picture *pictures, int count) {
-  for (int i = 0; i < count; i++) {
-    pictures[i].spec = o->technique_count ? o->techniques[i] : default_technique;
-    pictures[i].path = o->output ? strdup(o->output) : picture_name(scene->name, pictures[i].spec, ".png");
-    if (!pictures[i].path) return memory_error();
-    int status = o->output ? STATUS_OK : claim_picture(&pictures[i], claims);
-    if (!status) status = output_check(pictures[i].path);
+static int name_pictures(struct rendering *r) {
+  const struct options *o = r->options;
+  for (int i = 0; i < r->count; i++) {
+    r->paths[i] = o->output ? strdup(o->output) : picture_name(r->scene->name, r->specs[i], ".png");
+    if (!r->paths[i]) return memory_error();
+    int status = o->output ? STATUS_OK : claim_picture(r, i);
+    if (!status) status = output_check(r->paths[i]);
     if (status) return status;
   }
   int status = o->json ? output_check(o->json) : STATUS_OK;
   return !status && o->save_dir ? save_check(o->save_dir) : status;
 }
 
-static int measure_pictures(const struct options *o, struct host *host, struct picture *pictures, struct contestant *c,
-                            int count) {
-  const struct setup *setup = &host->scene->setup;
-  for (int i = 0; i < count; i++) {
-    int status = client_light(host->client, setup, &setup->light, pictures[i].spec, &pictures[i].light);
-    if (status) return status;
-    c[i] = (struct contestant){.client = host->client, .lights = &pictures[i].light, .light_count = 1};
-  }
-  return measure(c, count, o->frames, o->json != NULL);
-}
-
-/* What one run draws into, and where it tells people what it wrote. */
-struct drawing {
-  const struct options *options;
-  struct host *host;
-  struct picture *pictures;
-  struct contestant *contestants;
-  int count;
-  struct view *view;
-  float *visibility, *rgb;
-  FILE *people;
-};
-
-static int save_soft(const struct drawing *d, const struct save *save, int index, const char *name) {
-  struct insides insides = {0};
-  char *soft = name ? save_name_inside(name, "ssm") : NULL;
-  int status = soft ? client_insides(d->host->client, d->pictures[index].light, 0, &insides) : memory_error();
-  if (!status && insides.soft)
-    status = save_layers(save, soft, insides.soft_width, insides.soft_height, insides.soft_layers, insides.soft);
-  insides_free(&insides);
-  free(soft);
-  return status;
-}
-
-static int save_visibility(const struct drawing *d, int index) {
-  const struct save save = {d->options->save_dir, d->people, d->view->width, d->view->height};
-  int status = index == 0 ? save_view(&save, d->view) : STATUS_OK;
-  char *name = save_name(index, d->pictures[index].spec);
-  if (!status) status = name ? save_scalars(&save, name, d->visibility) : memory_error();
-  if (!status) status = save_soft(d, &save, index, name);
-  free(name);
-  return status;
-}
-
-static int write_picture(const struct drawing *d, int index) {
-  const struct picture *picture = &d->pictures[index];
-  const struct timing *timing = &d->contestants[index].timing;
-  int status = client_frame(d->host->client, picture->light);
-  if (!status) status = client_visibility(d->host->client, picture->light, d->visibility);
-  if (status) return status;
-  shade(d->view, &d->host->scene->setup.light, d->visibility, d->rgb);
-  status = picture_write(picture->path, d->view->width, d->view->height, d->rgb);
-  if (status) return status;
-  fprintf(d->people, "%s  %.2f ms a frame (%s, median of %d)\n", picture->path, timing->median, picture->spec,
-          timing->frames);
-  return d->options->save_dir ? save_visibility(d, index) : STATUS_OK;
-}
+/* ---- the work, and outputs --------------------------------------------------------------------------------------- */
 
 static void warn_if_unlit(const struct view *view) {
   size_t count = (size_t)view->width * (size_t)view->height, facing = 0, drawn = 0;
@@ -123,71 +69,81 @@ static void warn_if_unlit(const struct view *view) {
     warning("no receiver that the camera sees faces the light: check --light-center and --light-target");
 }
 
-static int write_json(const struct drawing *d) {
-  cJSON *object = result_begin(d->host), *results = cJSON_AddArrayToObject(object, "results");
-  for (int i = 0; i < d->count && results; i++) {
-    cJSON *result = cJSON_CreateObject();
+static int save_buffers(struct rendering *r, int index) {
+  const struct view *view = r->experiment.view;
+  const struct entry *entry = &r->experiment.entries[index];
+  const struct save save = {r->options->save_dir, r->people, view->width, view->height};
+  int status = index == 0 ? save_view(&save, view) : STATUS_OK;
+  return status ? status : save_technique(&save, index, entry->spec, entry->visibility, &entry->insides);
+}
+
+/* Pictures come one after the other, so that no more than one visibility takes memory. */
+static int write_picture(struct rendering *r, int index) {
+  struct experiment *e = &r->experiment;
+  const struct entry *entry = &e->entries[index];
+  int status = experiment_draw(e, index);
+  if (!status && r->options->save_dir) status = experiment_look(e, index, 0);
+  if (status) return status;
+  shade(e->view, &r->scene->setup.light, entry->visibility, r->rgb);
+  status = picture_write(r->paths[index], e->view->width, e->view->height, r->rgb);
+  if (status) return status;
+  fprintf(r->people, "%s  %.2f ms a frame (%s, median of %d)\n", r->paths[index], entry->timing.median, entry->spec,
+          entry->timing.frames);
+  if (r->options->save_dir) status = save_buffers(r, index);
+  experiment_drop(e, index);
+  return status;
+}
+
+static int write_json(const struct rendering *r) {
+  cJSON *object = result_begin(&r->experiment.host), *results = cJSON_AddArrayToObject(object, "results");
+  for (int i = 0; i < r->count && results; i++) {
+    cJSON *result = result_technique(r->specs[i]);
     cJSON_AddItemToArray(results, result);
-    add_technique(result, d->pictures[i].spec);
-    cJSON_AddStringToObject(result, "file", d->pictures[i].path);
-    cJSON_AddItemToObject(result, "time_ms", timing_to_json(&d->contestants[i].timing));
+    cJSON_AddStringToObject(result, "file", r->paths[i]);
+    cJSON_AddItemToObject(result, "time_ms", result_times(&r->experiment.entries[i].timing));
   }
-  int status = json_write(d->options->json, object);
-  if (!status && d->people == stdout) puts(d->options->json);
+  return write_result(r->options, object);
+}
+
+static int draw_and_write(struct rendering *r) {
+  const struct options *o = r->options;
+  struct experiment *e = &r->experiment;
+  int status = experiment_open(e, r->scene, o->device, r->specs, r->count);
+  if (status) return status;
+  r->rgb = malloc((size_t)e->view->width * (size_t)e->view->height * 3 * sizeof *r->rgb);
+  if (!r->rgb) return memory_error();
+  warn_if_unlit(e->view);
+  status = experiment_measure(e, o->frames, o->json != NULL);
+  for (int i = 0; i < r->count && !status; i++) status = write_picture(r, i);
+  if (!status && o->json) status = write_json(r);
   return status;
 }
 
-static int allocate(struct drawing *d) {
-  size_t pixels = (size_t)d->host->gbuffer->width * (size_t)d->host->gbuffer->height;
-  d->contestants = calloc((size_t)d->count + 1, sizeof *d->contestants);
-  d->visibility = malloc(pixels * sizeof *d->visibility);
-  d->rgb = malloc(pixels * 3 * sizeof *d->rgb);
-  if (!d->contestants || !d->visibility || !d->rgb) return memory_error();
-  return view_read(d->host->gbuffer, d->host->scene, &d->view);
-}
+/* ---- the command ------------------------------------------------------------------------------------------------- */
 
-static int draw_and_write(const struct options *o, struct host *host, struct picture *pictures, int count) {
-  struct drawing d = {.options = o, .host = host, .pictures = pictures, .count = count};
-  /* With the JSON on standard output, people's lines make room. */
-  d.people = o->json && strcmp(o->json, "-") == 0 ? stderr : stdout;
-  int status = allocate(&d);
-  if (!status) {
-    warn_if_unlit(d.view);
-    status = measure_pictures(o, host, pictures, d.contestants, count);
-  }
-  for (int i = 0; i < count && !status; i++) status = write_picture(&d, i);
-  if (!status && o->json) status = write_json(&d);
-  view_free(&d.view);
-  free(d.visibility);
-  free(d.rgb);
-  free(d.contestants);
-  return status;
-}
-
-static int render(const struct options *o, struct claims *claims, struct picture *pictures, int count) {
-  if (o->output && count > 1)
-    return input_error("--output names one file, but there are %d techniques: leave it out", count);
-  struct scene *scene = NULL;
-  struct host host = {0};
-  int status = claim_options(claims, o);
-  if (!status) status = claim_buffers(o, claims);
-  if (!status) status = options_scene(o, NULL, &scene);
-  if (!status) status = name_pictures(o, scene, claims, pictures, count);
-  if (!status) status = host_open(scene, o->device, &host);
-  if (!status) status = draw_and_write(o, &host, pictures, count);
-  host_close(&host);
-  scene_free(&scene);
-  return status;
+static int render(struct rendering *r) {
+  const struct options *o = r->options;
+  if (o->output && r->count > 1)
+    return input_error("--output names one file, but there are %d techniques: leave it out", r->count);
+  r->paths = calloc((size_t)r->count, sizeof *r->paths);
+  int status = r->paths ? claim_files(r) : memory_error();
+  if (!status) status = options_scene(o, NULL, &r->scene);
+  if (!status) status = name_pictures(r);
+  return status ? status : draw_and_write(r);
 }
 
 int command_render(const struct options *o) {
-  int count = o->technique_count ? o->technique_count : 1;
-  struct picture *pictures = calloc((size_t)count, sizeof *pictures);
-  struct claims claims = {NULL, 0};
-  int status = pictures ? render(o, &claims, pictures, count) : memory_error();
+  struct rendering r = {.options = o,
+                        .specs = o->technique_count ? o->techniques : default_techniques,
+                        .count = o->technique_count ? o->technique_count : 1,
+                        .people = options_people(o)};
+  int status = render(&r);
   if (status) save_abandon();
-  claims_free(&claims);
-  for (int i = 0; pictures && i < count; i++) free(pictures[i].path);
-  free(pictures);
+  experiment_close(&r.experiment);
+  scene_free(&r.scene);
+  claims_free(&r.claims);
+  for (int i = 0; r.paths && i < r.count; i++) free(r.paths[i]);
+  free(r.paths);
+  free(r.rgb);
   return status;
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "message.h"
+#include "base/message.h"
 #include "scene/vector.h"
 
 static pn_gl upload(GLenum target, const void *data, size_t bytes) {

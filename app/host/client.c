@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "message.h"
+#include "base/message.h"
 
 static void on_message(void *user, pn_log_level level, int message_id, const char *text) {
   struct client *client = user;

@@ -1,5 +1,5 @@
-/* client.h: the program as the library's client: one pn_context with the scene's casters and the camera's receiver. Everything goes through the public
- * header; what the library logs becomes the program's own lines. */
+/* client.h: the program as the library's client: one pn_context with the scene's casters and the camera's receiver.
+ * Everything goes through the public header; what the library logs becomes the program's own lines. */
 #ifndef PENUMBRA_APP_HOST_CLIENT_H
 #define PENUMBRA_APP_HOST_CLIENT_H
 
@@ -19,7 +19,8 @@ struct client {
 int client_create(const struct gpu_scene *gpu, const struct gbuffer *gbuffer, pn_state_mode mode, struct client **out);
 void client_free(struct client **client); /* and its lights */
 
-/* A light of the set-up's map and fit, with a technique whose programs the driver has compiled. spec NULL: the library's default. light: the scene's own, or another. */
+/* A light of the set-up's map and fit, with a technique whose programs the driver has compiled. spec NULL: the
+ * library's default. light: the scene's own, or another. */
 int client_light(struct client *client, const struct setup *setup, const struct light *light, const char *spec,
                  pn_light **out);
 

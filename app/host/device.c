@@ -8,8 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/message.h"
 #include "host/shader_cache.h"
-#include "message.h"
 
 /* Ways to a display: one for each EGL device, and what is left where devices cannot be enumerated. */
 enum { CANDIDATES_MAX = 32 };
@@ -229,5 +229,3 @@ const char *device_renderer(const struct device *device) { return device->render
 const char *device_version(const struct device *device) { return device->version; }
 
 int device_number(const struct device *device) { return device->number; }
-
-int device_is_software(const struct device *device) { return device->software; }

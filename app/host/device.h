@@ -20,7 +20,6 @@ void device_close(struct device **device); /* clears the handle; NULL and a NULL
 const char *device_renderer(const struct device *device); /* GL's strings */
 const char *device_version(const struct device *device);
 int device_number(const struct device *device);
-int device_is_software(const struct device *device);
 
 /* Tries every device and tells how it went. Returns how many there are; fills up to capacity. Call it while no
  * device is open. */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "message.h"
+#include "base/message.h"
 #include "scene/vector.h"
 
 static const char vertex_source[] = "#version 330 core\n"

@@ -15,15 +15,4 @@ struct gbuffer {
 int gbuffer_create(const struct gpu_scene *gpu, struct gbuffer **out);
 void gbuffer_free(struct gbuffer **gbuffer);
 
-/* The same on the CPU, top row first. Background: NaN positions and normals, mask and receives 0. */
-struct view {
-  int width, height;
-  float *position;   /* 3 a pixel, scene space */
-  float *normal;     /* 3 a pixel, unit, turned to the camera */
-  uint8_t *receives; /* the surface receives */
-  float *mask;       /* contract: 1 where the surface receives and faces all of the light, else 0 */
-};
-int view_read(const struct gbuffer *gbuffer, const struct scene *scene, struct view **out);
-void view_free(struct view **view);
-
 #endif

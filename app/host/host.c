@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "message.h"
+#include "base/message.h"
 
 int host_open(const struct scene *scene, const char *device, struct host *host) {
   memset(host, 0, sizeof *host);

@@ -1,11 +1,9 @@
 #include "host/shade.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "image.h"
-#include "message.h"
+#include "scene/setup.h"
 #include "scene/vector.h"
 
 static const float background = 0.05f, ambient = 0.02f;
@@ -86,20 +84,4 @@ void shade(const struct view *view, const struct light *light, const float *visi
     float lit = rgb[i];
     shade_with(&lit, &visibility[i], 1, &rgb[3 * i]);
   }
-}
-
-static int write_png(const char *path, int width, int height, const float *rgb) {
-  size_t count = (size_t)width * (size_t)height * 3;
-  uint8_t *bytes = malloc(count);
-  if (!bytes) return memory_error();
-  for (size_t i = 0; i < count; i++) bytes[i] = srgb_byte(rgb[i]);
-  int status = png_write(path, width, height, 3, bytes);
-  free(bytes);
-  return status;
-}
-
-int picture_write(const char *path, int width, int height, const float *rgb) {
-  if (image_kind_of(path) == IMAGE_PNG) return write_png(path, width, height, rgb);
-  const struct exr_plane planes[3] = {{"B", rgb + 2, 3}, {"G", rgb + 1, 3}, {"R", rgb, 3}};
-  return exr_write(path, width, height, planes, 3);
 }

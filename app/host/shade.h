@@ -2,7 +2,7 @@
 #ifndef PENUMBRA_APP_HOST_SHADE_H
 #define PENUMBRA_APP_HOST_SHADE_H
 
-#include "host/gbuffer.h"
+#include "host/view.h"
 
 /* The light's exact diffuse form factor at a surface point: the share of the point's cosine-weighted hemisphere
  * that the rectangle above the horizon covers; for a sun the cosine. 0 behind a rectangle. */
@@ -19,8 +19,4 @@ void shade_unoccluded(const struct view *view, const struct light *light, float 
 
 /* rgb = what unoccluded light and visibility give; background gets its own grey. */
 void shade_with(const float *unoccluded, const float *visibility, size_t count, float *rgb);
-
-/* Writes linear RGB as the ending of path says: sRGB PNG or EXR. Exit status. */
-int picture_write(const char *path, int width, int height, const float *rgb);
-
 #endif

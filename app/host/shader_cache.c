@@ -8,7 +8,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-#include "message.h"
+#include "base/message.h"
 
 static const double least_bytes = 32 << 20;
 

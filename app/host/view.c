@@ -1,11 +1,12 @@
-/* The camera's buffers, read back: what errors are measured over and what is shaded. */
+#include "host/view.h"
+
 #include <epoxy/gl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "host/gbuffer.h"
-#include "message.h"
+#include "base/message.h"
+#include "scene/setup.h"
 #include "scene/vector.h"
 
 /* eye = P^-1 (pixel, depth), scene = V^-1 eye, in double from the very matrices the library is given. V is a

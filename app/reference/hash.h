@@ -1,7 +1,7 @@
 /* hash.h: SipHash-2-4 with 128 bits of result (Aumasson and Bernstein 2012) under a fixed key: one pass over what is
  * written piece by piece. */
-#ifndef PENUMBRA_APP_HASH_H
-#define PENUMBRA_APP_HASH_H
+#ifndef PENUMBRA_APP_REFERENCE_HASH_H
+#define PENUMBRA_APP_REFERENCE_HASH_H
 
 #include <stddef.h>
 #include <stdint.h>

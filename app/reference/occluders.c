@@ -249,67 +249,53 @@ float occluders_magnitude(const struct occluders *occluders) { return occluders-
 
 /* ---- rays -------------------------------------------------------------------------------------------------------- */
 
-#define FILL_RAYS(ray, packet, first, lanes) \
-  for (int i = 0; i < (lanes); i++) { \
-    (ray)->org_x[i] = (packet)->origin[0]; \
-    (ray)->org_y[i] = (packet)->origin[1]; \
-    (ray)->org_z[i] = (packet)->origin[2]; \
-    (ray)->dir_x[i] = (packet)->direction[0][(first) + i]; \
-    (ray)->dir_y[i] = (packet)->direction[1][(first) + i]; \
-    (ray)->dir_z[i] = (packet)->direction[2][(first) + i]; \
-    (ray)->tnear[i] = (ray)->time[i] = 0; \
-    (ray)->tfar[i] = (packet)->reach; \
-    (ray)->mask[i] = UINT32_MAX; \
-    (ray)->id[i] = (ray)->flags[i] = 0; \
+/* The rays of a packet go much the same way. */
+#if PENUMBRA_EMBREE == 4
+typedef struct RTCOccludedArguments query_terms;
+static void set_coherent(query_terms *terms) {
+  rtcInitOccludedArguments(terms);
+  terms->flags = RTC_RAY_QUERY_FLAG_COHERENT;
+}
+#define OCCLUDED(lanes, valid, scene, ray, terms) rtcOccluded##lanes(valid, scene, ray, terms)
+#else
+typedef struct RTCIntersectContext query_terms;
+static void set_coherent(query_terms *terms) {
+  rtcInitIntersectContext(terms);
+  terms->flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+}
+#define OCCLUDED(lanes, valid, scene, ray, terms) rtcOccluded##lanes(valid, scene, terms, ray)
+#endif
+
+/* How many of the packet's rays first, first + 1, ... are blocked, as many as there are lanes. Embree sets tfar to
+ * -infinity where something was hit. */
+#define BLOCKED(lanes) \
+  static int blocked_##lanes(const struct occluders *occluders, const struct ray_packet *packet, int first) { \
+    struct RTCRay##lanes ray; \
+    query_terms terms; \
+    _Alignas(4 * lanes) int valid[lanes]; \
+    memcpy(valid, packet->valid + first, sizeof valid); \
+    for (int i = 0; i < lanes; i++) { \
+      ray.org_x[i] = packet->origin[0]; \
+      ray.org_y[i] = packet->origin[1]; \
+      ray.org_z[i] = packet->origin[2]; \
+      ray.dir_x[i] = packet->direction[0][first + i]; \
+      ray.dir_y[i] = packet->direction[1][first + i]; \
+      ray.dir_z[i] = packet->direction[2][first + i]; \
+      ray.tnear[i] = ray.time[i] = 0; \
+      ray.tfar[i] = packet->reach; \
+      ray.mask[i] = UINT32_MAX; \
+      ray.id[i] = ray.flags[i] = 0; \
+    } \
+    set_coherent(&terms); \
+    OCCLUDED(lanes, valid, occluders->scene, &ray, &terms); \
+    int blocked = 0; \
+    for (int i = 0; i < lanes; i++) blocked += packet->valid[first + i] & (ray.tfar[i] < 0); \
+    return blocked; \
   }
-
-/* Embree sets tfar to -infinity where something was hit. */
-#define COUNT_BLOCKED(ray, valid, lanes, blocked) \
-  for (int i = 0; i < (lanes); i++) (blocked) += (valid)[i] & ((ray)->tfar[i] < 0)
-
-static int blocked_16(const struct occluders *occluders, const struct ray_packet *packet) {
-  struct RTCRay16 ray;
-  _Alignas(64) int valid[16];
-  memcpy(valid, packet->valid, sizeof valid);
-  FILL_RAYS(&ray, packet, 0, 16)
-#if PENUMBRA_EMBREE == 4
-  struct RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  rtcOccluded16(valid, occluders->scene, &ray, &arguments);
-#else
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded16(valid, occluders->scene, &context, &ray);
-#endif
-  int blocked = 0;
-  COUNT_BLOCKED(&ray, packet->valid, 16, blocked);
-  return blocked;
-}
-
-static int blocked_8(const struct occluders *occluders, const struct ray_packet *packet, int first) {
-  struct RTCRay8 ray;
-  _Alignas(32) int valid[8];
-  memcpy(valid, packet->valid + first, sizeof valid);
-  FILL_RAYS(&ray, packet, first, 8)
-#if PENUMBRA_EMBREE == 4
-  struct RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  rtcOccluded8(valid, occluders->scene, &ray, &arguments);
-#else
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded8(valid, occluders->scene, &context, &ray);
-#endif
-  int blocked = 0;
-  COUNT_BLOCKED(&ray, packet->valid + first, 8, blocked);
-  return blocked;
-}
+BLOCKED(16)
+BLOCKED(8)
 
 int occluders_blocked(const struct occluders *occluders, const struct ray_packet *packet) {
-  if (occluders->wide) return blocked_16(occluders, packet);
+  if (occluders->wide) return blocked_16(occluders, packet, 0);
   return blocked_8(occluders, packet, 0) + blocked_8(occluders, packet, 8);
 }

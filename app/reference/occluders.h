@@ -1,6 +1,6 @@
 /* occluders.h: the casters as Embree wants them, and the only place that knows Embree. */
-#ifndef PENUMBRA_APP_OCCLUDERS_H
-#define PENUMBRA_APP_OCCLUDERS_H
+#ifndef PENUMBRA_APP_REFERENCE_OCCLUDERS_H
+#define PENUMBRA_APP_REFERENCE_OCCLUDERS_H
 
 #include "reference/reference.h"
 #include "reference/sampling.h"

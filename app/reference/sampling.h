@@ -7,8 +7,8 @@
  * so that an edge parallel to the light's is found within 1/N. For a net the star discrepancy is at most (m/3 + 19/9)
  * / N (Dick and Kritzer 2006): 5.44/1024, the error at the corner of a shadow. Points come in packets of 16 that lie
  * close together on the light, because rays that run together are traced several times faster. */
-#ifndef PENUMBRA_APP_SAMPLING_H
-#define PENUMBRA_APP_SAMPLING_H
+#ifndef PENUMBRA_APP_REFERENCE_SAMPLING_H
+#define PENUMBRA_APP_REFERENCE_SAMPLING_H
 
 #include <stdint.h>
 

@@ -1,6 +1,6 @@
 /* error.h: how far a visibility buffer is from the truth, over its shadow pixels. */
-#ifndef PENUMBRA_APP_ERROR_H
-#define PENUMBRA_APP_ERROR_H
+#ifndef PENUMBRA_APP_REPORT_ERROR_H
+#define PENUMBRA_APP_REPORT_ERROR_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -24,8 +24,8 @@ struct error_statistics {
 int error_measure(const float *reference, const float *result, const uint8_t *mask, size_t count,
                   struct error_statistics *out);
 
-/* A technique's own bound of its error, over the same pixels: its mean and maximum, and the share of pixels whose error it
- * holds. bound may be NULL: no pixels. */
+/* A technique's own bound of its error, over the same pixels: its mean and maximum, and the share of pixels whose
+ * error it holds. bound may be NULL: no pixels. */
 struct error_bound {
   double mean, max, held;
   size_t pixels;

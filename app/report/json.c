@@ -14,11 +14,14 @@ static int add_text(cJSON *object, const char *name, const char *value) {
   return (value ? cJSON_AddStringToObject(object, name, value) : cJSON_AddNullToObject(object, name)) != NULL;
 }
 
-static int add_copy(cJSON *object, const char *name, const cJSON *value) {
-  cJSON *copy = value ? cJSON_Duplicate(value, 1) : cJSON_CreateObject();
-  if (copy && cJSON_AddItemToObject(object, name, copy)) return 1;
-  cJSON_Delete(copy);
+static int add_item(cJSON *object, const char *name, cJSON *item) {
+  if (item && cJSON_AddItemToObject(object, name, item)) return 1;
+  cJSON_Delete(item);
   return 0;
+}
+
+static int add_copy(cJSON *object, const char *name, const cJSON *value) {
+  return add_item(object, name, value ? cJSON_Duplicate(value, 1) : cJSON_CreateObject());
 }
 
 static int add_error(cJSON *object, const struct error_statistics *error) {
@@ -28,16 +31,20 @@ static int add_error(cJSON *object, const struct error_statistics *error) {
          add_number(item, "bias", error->bias) && add_number(item, "pixels", (double)error->pixels);
 }
 
-static int add_times(cJSON *object, const struct report_technique *technique) {
-  cJSON *times = cJSON_AddObjectToObject(object, "time_ms");
-  cJSON *total = times ? cJSON_AddObjectToObject(times, "total") : NULL,
-        *stages = times ? cJSON_AddObjectToObject(times, "stages") : NULL;
-  if (!total || !stages || !add_number(total, "median", technique->time_median) ||
-      !add_number(total, "min", technique->time_least) || !add_number(total, "max", technique->time_most))
-    return 0;
-  for (int i = 0; i < technique->stage_count; i++)
-    if (!add_number(stages, technique->stages[i].name, technique->stages[i].milliseconds)) return 0;
-  return 1;
+cJSON *report_times(double median, double least, double most, const struct report_stage *stages, int stage_count) {
+  cJSON *times = cJSON_CreateObject(), *total = times ? cJSON_AddObjectToObject(times, "total") : NULL,
+        *parts = times ? cJSON_AddObjectToObject(times, "stages") : NULL;
+  int added = total && parts && add_number(total, "median", median) && add_number(total, "min", least) &&
+              add_number(total, "max", most);
+  for (int i = 0; i < stage_count && added; i++) added = add_number(parts, stages[i].name, stages[i].milliseconds);
+  if (added) return times;
+  cJSON_Delete(times);
+  return NULL;
+}
+
+static int add_times(cJSON *object, const struct report_technique *t) {
+  cJSON *times = report_times(t->time_median, t->time_least, t->time_most, t->stages, t->stage_count);
+  return add_item(object, "time_ms", times);
 }
 
 /* Means over the pixels that looked at primitives; only of techniques that search. */
@@ -77,12 +84,19 @@ static int add_result(cJSON *results, const struct report_technique *technique) 
          add_bound(item, &technique->bound) && add_scatter(item, technique);
 }
 
+cJSON *report_head(const char *version, const char *renderer, const char *gl_version, const cJSON *scene) {
+  cJSON *head = cJSON_CreateObject();
+  cJSON *device = head && add_text(head, "penumbra", version) && add_number(head, "schema", 1)
+                      ? cJSON_AddObjectToObject(head, "device")
+                      : NULL;
+  if (device && add_text(device, "renderer", renderer) && add_text(device, "version", gl_version) &&
+      add_copy(head, "scene", scene))
+    return head;
+  cJSON_Delete(head);
+  return NULL;
+}
+
 static int fill(cJSON *json, const struct report *report) {
-  if (!add_text(json, "penumbra", report->version) || !add_number(json, "schema", 1)) return 0;
-  cJSON *device = cJSON_AddObjectToObject(json, "device");
-  if (!device || !add_text(device, "renderer", report->renderer) || !add_text(device, "version", report->gl_version) ||
-      !add_copy(json, "scene", report->scene))
-    return 0;
   cJSON *reference = cJSON_AddObjectToObject(json, "reference");
   if (!reference || !add_text(reference, "method", "embree") || !add_number(reference, "samples", report->samples) ||
       !add_number(reference, "time_ms", report->reference_ms))
@@ -94,7 +108,7 @@ static int fill(cJSON *json, const struct report *report) {
 }
 
 cJSON *report_json(const struct report *report) {
-  cJSON *json = cJSON_CreateObject();
+  cJSON *json = report_head(report->version, report->renderer, report->gl_version, report->scene);
   if (json && fill(json, report)) return json;
   cJSON_Delete(json);
   return NULL;

@@ -60,6 +60,11 @@ void report_table(const struct report *report, FILE *file);
 /* NULL: out of memory. The caller deletes it. */
 cJSON *report_json(const struct report *report);
 
+/* Parts of it that other results have too. What every result begins with: penumbra, schema, device, scene (copied).
+ * {"total": {"median", "min", "max"}, "stages": {...}}. NULL: out of memory. The caller deletes or adds them. */
+cJSON *report_head(const char *version, const char *renderer, const char *gl_version, const cJSON *scene);
+cJSON *report_times(double median, double least, double most, const struct report_stage *stages, int stage_count);
+
 enum report_status { REPORT_OK = 0, REPORT_MEMORY, REPORT_TOO_MANY };
 
 /* A PNG in memory, malloc'ed. REPORT_TOO_MANY: no picture of a sane size holds so many techniques. */

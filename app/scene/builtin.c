@@ -1,13 +1,13 @@
-#include "builtin.h"
+#include "scene/builtin.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "message.h"
-#include "names.h"
-#include "scene_parts.h"
-#include "shape.h"
+#include "base/message.h"
+#include "base/names.h"
+#include "scene/builtin_scenes.h"
+#include "scene/setup.h"
 
 const struct builtin builtins[] = {
     {"square", "a square parallel to the light over a plane: its shadow has a closed form", build_square, 0, 0},
@@ -24,12 +24,6 @@ const struct builtin builtins[] = {
     {"copies", "N copies of one mesh, for scaling; builtin:copies=N, default 16", build_copies, 16, 4096},
 };
 const int builtin_count = sizeof builtins / sizeof *builtins;
-
-int builtin_floor(struct scene *scene) {
-  struct shape shape = {0};
-  shape_floor(&shape, -2.5, -2.5, 2.5, 2.5, 0);
-  return shape_add_to(&shape, scene, 0, 1);
-}
 
 static const struct builtin *find(const char *name, size_t length) {
   for (int i = 0; i < builtin_count; i++)

@@ -1,14 +1,9 @@
 /* Built-in scenes that surround the camera: a room, a terrain. */
 #include <math.h>
 
-#include "builtin.h"
-#include "shape.h"
-
-static void set3(double out[3], double x, double y, double z) {
-  out[0] = x;
-  out[1] = y;
-  out[2] = z;
-}
+#include "scene/builtin_scenes.h"
+#include "scene/shape.h"
+#include "scene/vector.h"
 
 /* Seen from inside. Nothing in a convex room stands between its walls and the light, so they only receive. */
 static void walls(struct shape *shape, double half_x, double height, double half_z) {
@@ -50,13 +45,13 @@ int build_room(struct scene *scene, int count) {
   shape_box(&shape, 1.8, -0.8, 1.54, 1.7, 0.2, 0.4);
   if (shape_add_to(&shape, scene, 1, 1)) return -1;
   struct light *light = &scene->setup.light;
-  set3(light->center, 0.1, 2.55, -0.2);
-  set3(light->target, 0.1, 0, -0.2);
+  v3_set(light->center, 0.1, 2.55, -0.2);
+  v3_set(light->target, 0.1, 0, -0.2);
   light->size[0] = 1.0;
   light->size[1] = 0.5;
   struct camera *camera = &scene->setup.camera;
-  set3(camera->position, 0.9, 1.75, 2.35);
-  set3(camera->target, -0.15, 0.85, -0.8);
+  v3_set(camera->position, 0.9, 1.75, 2.35);
+  v3_set(camera->target, -0.15, 0.85, -0.8);
   camera->fov = 62;
   return 0;
 }
@@ -118,11 +113,11 @@ int build_terrain(struct scene *scene, int count) {
   if (shape_add_to(&shape, scene, 1, 1)) return -1;
   struct light *light = &scene->setup.light;
   light->shape = PN_LIGHT_SUN;
-  set3(light->center, 80, 78, -50);
-  set3(light->target, 0, 0, 0);
+  v3_set(light->center, 80, 78, -50);
+  v3_set(light->target, 0, 0, 0);
   light->size[0] = light->size[1] = 2;
   struct camera *camera = &scene->setup.camera;
-  set3(camera->position, 0, 66, 92);
-  set3(camera->target, 0, 2, 8);
+  v3_set(camera->position, 0, 66, 92);
+  v3_set(camera->target, 0, 2, 8);
   return 0;
 }

@@ -1,11 +1,11 @@
 /* Built-in scenes of a few plain solids over a floor. */
 #include <math.h>
 
-#include "builtin.h"
-#include "shape.h"
+#include "scene/builtin_scenes.h"
+#include "scene/shape.h"
 
 static int over_floor(struct scene *scene, struct shape *shape) {
-  return shape_add_to(shape, scene, 1, 1) || builtin_floor(scene) ? -1 : 0;
+  return shape_add_to(shape, scene, 1, 1) || shape_add_floor(scene) ? -1 : 0;
 }
 
 int build_square(struct scene *scene, int count) {
@@ -42,7 +42,7 @@ int build_balls(struct scene *scene, int count) {
     const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
     if (shape_place(scene, mesh, x, y, z, place)) return -1;
   }
-  return builtin_floor(scene);
+  return shape_add_floor(scene);
 }
 
 /* From the light's centre (height 3) the plate covers the box below it, which is wider than the plate; from the
@@ -94,5 +94,5 @@ int build_copies(struct scene *scene, int count) {
     const double x[3] = {ca, sa * cb, sa * sb}, y[3] = {-sa, ca * cb, ca * sb}, z[3] = {0, -size * sb, size * cb};
     if (shape_place(scene, mesh, x, y, z, place)) return -1;
   }
-  return builtin_floor(scene);
+  return shape_add_floor(scene);
 }

@@ -2,9 +2,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "builtin.h"
-#include "scene_parts.h"
-#include "shape.h"
+#include "scene/builtin_scenes.h"
+#include "scene/shape.h"
 
 static void bar(struct shape *shape, double x0, double y0, double x1, double y1, double z, double thickness) {
   const double p[3] = {x0, y0, z}, q[3] = {x1, y1, z}, side[3] = {0, 0, 1};
@@ -40,7 +39,7 @@ int build_fence(struct scene *scene, int count) {
   light->size[0] = light->size[1] = 0.25;
   light->up[1] = 1;
   light->up[2] = 0;
-  return builtin_floor(scene);
+  return shape_add_floor(scene);
 }
 
 /* One leaf with a serrated edge, pointing up in the unit square; v = 0 is its stalk. */
@@ -105,5 +104,5 @@ int build_leaves(struct scene *scene, int count) {
   shape_cylinder(&shape, 0.02, 0, 0.85, 16);
   if (shape_add_to(&shape, scene, 1, 1)) return -1;
   scene->setup.light.size[0] = scene->setup.light.size[1] = 0.5;
-  return builtin_floor(scene);
+  return shape_add_floor(scene);
 }

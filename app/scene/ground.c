@@ -1,8 +1,9 @@
+#include "scene/ground.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-#include "message.h"
-#include "scene_parts.h"
+#include "base/message.h"
 
 int ground_add(struct scene *scene) {
   double half = 2.5 * scene_extent(scene);

@@ -1,46 +1,18 @@
-#define _GNU_SOURCE /* pipe2 */
-#include "import.h"
+#include "scene/import.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
-#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "image.h"
-#include "interrupt.h"
-#include "message.h"
-#include "scene_parts.h"
-
-/* What an import may take. A binary STL has 50 bytes a triangle and no format that people use has fewer than 16, so
- * the memory allows the 1 KB a triangle that importing is meant to stay under; the time is many times what the
- * slowest text format was seen to need. */
-enum { IMPORT_SECONDS = 20, IMPORT_SECONDS_PER_16_MB = 20, IMPORT_MB = 1024, IMPORT_BYTES_PER_BYTE = 64 };
-
-static unsigned import_seconds(off_t size) {
-  double seconds = IMPORT_SECONDS + (double)size / (16 << 20) * IMPORT_SECONDS_PER_16_MB;
-  return seconds > 3600 ? 3600 : (unsigned)seconds;
-}
-
-static void limit_child(off_t size) {
-  struct rlimit cpu = {import_seconds(size), import_seconds(size) + 1};
-  setrlimit(RLIMIT_CPU, &cpu);
-  struct rlimit core = {0, 0};
-  setrlimit(RLIMIT_CORE, &core);
-#if !defined(__SANITIZE_ADDRESS__) /* a sanitizer's shadow memory alone is beyond any limit */
-  rlim_t bytes = ((rlim_t)IMPORT_MB << 20) + (rlim_t)size * IMPORT_BYTES_PER_BYTE;
-  struct rlimit memory = {bytes, bytes};
-  setrlimit(RLIMIT_DATA, &memory);
-#endif
-}
+#include "base/message.h"
+#include "files/image.h"
+#include "scene/import_process.h"
+#include "scene/import_records.h"
 
 static int check_file(const char *path, struct stat *info) {
   if (stat(path, info) != 0) return input_error("%s: %s", path, strerror(errno));
@@ -49,36 +21,6 @@ static int check_file(const char *path, struct stat *info) {
   if (info->st_size == 0) return input_error("%s: the file is empty", path);
   if (access(path, R_OK) != 0) return input_error("%s: %s", path, strerror(errno));
   return STATUS_OK;
-}
-
-/* Starts the import; its records come out of the returned descriptor. -1: no process or pipe. */
-static int start_child(const char *path, int up_is_z, off_t size, pid_t *child) {
-  int pipes[2];
-  if (pipe2(pipes, O_CLOEXEC) != 0) return -1;
-  fflush(NULL);
-  pid_t parent = getpid();
-  *child = fork();
-  if (*child < 0) {
-    close(pipes[0]);
-    close(pipes[1]);
-    return -1;
-  }
-  if (*child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(1);
-    signal(SIGINT, SIG_IGN); /* the parent speaks for both, and ends this process */
-    signal(SIGTERM, SIG_DFL);
-    signal(SIGHUP, SIG_DFL);
-    int nowhere = open("/dev/null", O_RDWR);
-    dup2(nowhere, STDOUT_FILENO);
-    dup2(nowhere, STDERR_FILENO);
-    close(pipes[0]);
-    limit_child(size);
-    import_child(path, up_is_z, pipes[1]);
-    _exit(0);
-  }
-  close(pipes[1]);
-  return pipes[0];
 }
 
 /* 0: all size bytes; -1: the pipe ended. */
@@ -165,6 +107,8 @@ static int explain_death(const char *path, int wait_status, off_t size) {
     if (number == SIGKILL) return work_error("%s: the importer was killed, perhaps because memory ran out", path);
     return input_error("%s: the importer crashed on it (%s); the file is probably damaged", path, strsignal(number));
   }
+  /* What a shell and the dynamic linker say of a program that does not start. */
+  if (WEXITSTATUS(wait_status) == 127) return work_error("%s: the importer does not start", path);
   return input_error("%s: the importer gave up on it; the file is probably damaged or far too large", path);
 }
 
@@ -186,12 +130,11 @@ int import_model(const char *path, int up_is_z, struct scene **out) {
   struct scene *scene = scene_named_after(path);
   if (!scene) return memory_error();
   pid_t child = 0;
-  int fd = start_child(path, up_is_z, info.st_size, &child);
+  int fd = import_start(path, up_is_z, info.st_size, &child);
   if (fd < 0) {
     scene_free(&scene);
     return work_error("cannot start the importer: %s", strerror(errno));
   }
-  interrupt_watch_child(child);
   enum received last;
   do last = receive(fd, path, scene);
   while (last == RECEIVED_MORE);
@@ -200,7 +143,6 @@ int import_model(const char *path, int up_is_z, struct scene **out) {
   int wait_status = 0;
   while (waitpid(child, &wait_status, 0) < 0 && errno == EINTR) {
   }
-  interrupt_watch_child(0);
   if (last == RECEIVED_END) {
     *out = scene;
     return STATUS_OK;

@@ -1,24 +1,12 @@
-/* import.h: the importer runs in a process of its own, because Assimp may take any time and memory over a hostile
- * file, or crash. The child sends records over a pipe: meshes, instances, textures, counts; the parent builds the
- * scene from them. Both are the same program image, so structs travel as they are. */
+/* import.h: model files, through Assimp. It runs in a process of its own (import_process.h), because it may take any
+ * time and memory over a hostile file, or crash. */
 #ifndef PENUMBRA_APP_SCENE_IMPORT_H
 #define PENUMBRA_APP_SCENE_IMPORT_H
 
-#include <stdint.h>
+#include "scene/scene.h"
 
-enum record_tag { RECORD_MESH = 0x50454e01, RECORD_INSTANCE, RECORD_TEXTURE, RECORD_WARNING, RECORD_ERROR, RECORD_END };
-
-struct record {
-  uint32_t tag;
-  uint32_t vertex_count, triangle_count; /* mesh: followed by positions, texcoords where texture >= 0, indices */
-  int32_t mesh, texture;                 /* instance: which mesh; mesh: which texture */
-  float cutoff;
-  float scene_from_object[16];
-  int32_t width, height, wrap_u, wrap_v; /* texture: followed by width * height bytes */
-  uint32_t text_size;                    /* warning, error: followed by the text, without a terminator */
-};
-
-/* In the child: imports path and writes its records to fd. Returns when everything or one error was sent. */
-void import_child(const char *path, int up_is_z, int fd);
+/* The model file, without ground and set-up. On any thread, also on several at once, whether or not GL has started;
+ * import_serve must have been called. Exit status; prints one line on failure. */
+int import_model(const char *path, int up_is_z, struct scene **out);
 
 #endif

@@ -1,40 +1,19 @@
-#include "import_child.h"
+#include "scene/import_child.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
-#include <errno.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "scene/import_material.h"
+#include "scene/import_mesh.h"
+#include "scene/scene.h"
+
+/* In place of a mesh's number. */
 enum { MESH_NOT_SENT = -2, MESH_EMPTY = -1, NODE_DEPTH_MAX = 4096 };
-struct sent_mesh {
-  int number; /* in the scene */
-};
-
-void send_bytes(int fd, const void *bytes, size_t size) {
-  for (size_t done = 0; done < size;) {
-    ssize_t n = write(fd, (const char *)bytes + done, size - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) _exit(1);
-    done += (size_t)n;
-  }
-}
-
-void send_text(int fd, enum record_tag tag, const char *format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  struct record r = {.tag = tag, .text_size = (uint32_t)strlen(text)};
-  send_bytes(fd, &r, sizeof r);
-  send_bytes(fd, text, r.text_size);
-}
 
 static const struct aiScene *read_model(const char *path) {
   struct aiPropertyStore *settings = aiCreatePropertyStore();
@@ -62,7 +41,7 @@ static int to_columns(const struct aiMatrix4x4 *m, int up_is_z, float out[16]) {
     out[4 * column + 3] = column == 3;
   }
   for (int i = 0; i < 16; i++)
-    if (!isfinite(out[i]) || fabsf(out[i]) > 1e15f) return 0;
+    if (!isfinite(out[i]) || fabsf(out[i]) > (float)COORDINATE_MAX) return 0;
   return m->d1 == 0 && m->d2 == 0 && m->d3 == 0 && m->d4 == 1;
 }
 
@@ -86,14 +65,14 @@ static void send_instance(struct importer *importer, unsigned mesh_index, const 
     return;
   }
   const struct aiMesh *mesh = importer->model->mMeshes[mesh_index];
-  struct sent_mesh *sent = &importer->sent[mesh_index];
-  if (sent->number == MESH_NOT_SENT) {
+  int *sent = &importer->sent[mesh_index];
+  if (*sent == MESH_NOT_SENT) {
     static const struct material_alpha opaque = {.texture = -1};
     int known = importer->alphas && mesh->mMaterialIndex < importer->model->mNumMaterials;
-    sent->number = send_mesh(importer, mesh, known ? &importer->alphas[mesh->mMaterialIndex] : &opaque);
+    *sent = send_mesh(importer, mesh, known ? &importer->alphas[mesh->mMaterialIndex] : &opaque);
   }
-  if (sent->number == MESH_EMPTY) return;
-  r.mesh = sent->number;
+  if (*sent == MESH_EMPTY) return;
+  r.mesh = *sent;
   send_bytes(importer->fd, &r, sizeof r);
   importer->instance_count++;
 }
@@ -113,15 +92,15 @@ static void describe_dropped(const struct importer *importer, char *text, size_t
   const struct {
     uint64_t count;
     const char *one, *many;
-  } rows[] = {{importer->dropped_nan, "triangle with a coordinate that is not finite",
-               "triangles with coordinates that are not finite"},
-              {importer->dropped_far, "triangle with a coordinate beyond 1e15",
-               "triangles with coordinates beyond 1e15"},
-              {importer->dropped_area, "triangle without area", "triangles without area"},
-              {importer->dropped_index, "triangle with a corner that does not exist",
-               "triangles with corners that do not exist"},
-              {importer->dropped_instances, "mesh placed with an unusable transform",
-               "meshes placed with unusable transforms"}};
+  } rows[] = {
+      {importer->dropped_nan, "triangle with a coordinate that is not finite",
+       "triangles with coordinates that are not finite"},
+      {importer->dropped_far, "triangle with a coordinate beyond 1e15", "triangles with coordinates beyond 1e15"},
+      {importer->dropped_area, "triangle without area", "triangles without area"},
+      {importer->dropped_index, "triangle with a corner that does not exist",
+       "triangles with corners that do not exist"},
+      {importer->dropped_instances, "mesh placed with an unusable transform",
+       "meshes placed with unusable transforms"}};
   *text = 0;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     if (!rows[i].count) continue;
@@ -173,7 +152,7 @@ void import_child(const char *path, int up_is_z, int fd) {
   unsigned count = importer.model->mNumMeshes;
   importer.sent = malloc((count + 1) * sizeof *importer.sent);
   if (!importer.sent) return;
-  for (unsigned i = 0; i < count; i++) importer.sent[i].number = MESH_NOT_SENT;
+  for (unsigned i = 0; i < count; i++) importer.sent[i] = MESH_NOT_SENT;
   send_materials(&importer);
   struct aiMatrix4x4 identity;
   aiIdentityMatrix4(&identity);

@@ -1,3 +1,5 @@
+#include "scene/import_material.h"
+
 #include <assimp/GltfMaterial.h>
 #include <assimp/cimport.h>
 #include <assimp/material.h>
@@ -9,9 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "image.h"
-#include "import_child.h"
-#include "scene.h"
+#include "files/image.h"
+#include "scene/scene.h"
 
 /* Where a material's holes are: which texture, which of its values, scaled by what. */
 struct alpha_source {

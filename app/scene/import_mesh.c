@@ -1,19 +1,19 @@
+#include "scene/import_mesh.h"
+
 #include <assimp/mesh.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "import_child.h"
-#include "vector.h"
-
-/* Far beyond any scene, and small enough that squares of distances stay finite floats. */
-static const float coordinate_max = 1e15f;
+#include "scene/scene.h"
+#include "scene/vector.h"
 
 static int is_finite(const struct aiVector3D *p) { return isfinite(p->x) && isfinite(p->y) && isfinite(p->z); }
 
 static int is_near(const struct aiVector3D *p) {
-  return fabsf(p->x) <= coordinate_max && fabsf(p->y) <= coordinate_max && fabsf(p->z) <= coordinate_max;
+  const float most = (float)COORDINATE_MAX;
+  return fabsf(p->x) <= most && fabsf(p->y) <= most && fabsf(p->z) <= most;
 }
 
 static int has_area(const struct aiVector3D *p, const struct aiVector3D *q, const struct aiVector3D *r) {

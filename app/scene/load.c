@@ -1,7 +1,12 @@
+#include "scene/load.h"
+
 #include <string.h>
 
-#include "message.h"
-#include "scene_parts.h"
+#include "base/message.h"
+#include "scene/builtin.h"
+#include "scene/ground.h"
+#include "scene/import.h"
+#include "scene/setup.h"
 
 /* With --split what casts does not receive. */
 static int split(struct scene *scene) {
@@ -40,7 +45,7 @@ int scene_load(const struct scene_request *request, struct scene **out) {
                        : import_model(request->name, request->up_is_z, &scene);
   if (status) return status;
   scene_measure(scene);
-  if (!(scene_extent(scene) > 0) || scene_extent(scene) > 1e15) {
+  if (!(scene_extent(scene) > 0) || scene_extent(scene) > COORDINATE_MAX) {
     status = input_error("%s: the model's extent is %g, which cannot be drawn", request->name, scene_extent(scene));
   } else {
     if (!builtin) setup_standard(scene);

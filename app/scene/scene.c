@@ -1,12 +1,11 @@
-#include "scene.h"
+#include "scene/scene.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene_parts.h"
-#include "vector.h"
+#include "scene/vector.h"
 
 void mesh_free(struct mesh *mesh) {
   free(mesh->positions);

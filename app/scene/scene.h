@@ -1,7 +1,5 @@
-/* scene.h: what is drawn, in plain memory, independent of GL: triangles, where they stand, the light, the camera.
- *
- *     scene_load      a model file (scene/import.c) or builtin:NAME (scene/builtin.c), with its standard set-up
- *     scene_free
+/* scene.h: what is drawn, in plain memory, independent of GL: triangles, where they stand, the light, the camera. How
+ * one is made: load.h.
  *
  * Scene space is right-handed, Y up; matrices are column-major and map column vectors. */
 #ifndef PENUMBRA_APP_SCENE_H
@@ -11,6 +9,9 @@
 #include <stdint.h>
 
 #include "penumbra/penumbra.h"
+
+/* The largest coordinate anywhere, so that squares of distances stay finite floats. */
+#define COORDINATE_MAX 1e15
 
 /* An alpha texture: one byte a texel, row 0 at v = 0 (the bottom), as OpenGL wants it. Sampled bilinearly from this one
  * level, so that a ray tracer and the GPU see the same holes: texture_alpha is the definition. */
@@ -82,40 +83,26 @@ struct scene {
   struct setup setup;
 };
 
-/* What scene_load is told beside the name. Zeroed: the defaults. */
-struct scene_request {
-  const char *name; /* a file, or builtin:NAME or builtin:NAME=N */
-  int up_is_z;
-  enum ground ground; /* default: on for files, off for built-in scenes, which bring their own floor */
-  int split;
-};
-
-/* Loads or builds the scene with its ground, its standard set-up (contract: B and H) applied. On failure *out is
- * NULL, one line was printed, and the exit status is returned. Must be called before any thread or GL context
- * exists: the import forks. */
-int scene_load(const struct scene_request *request, struct scene **out);
-void scene_free(struct scene **scene); /* clears the handle; NULL and a NULL handle are fine */
+struct scene *scene_new(const char *name); /* NULL: out of memory, nothing printed */
+void scene_free(struct scene **scene);     /* clears the handle; NULL and a NULL handle are fine */
 
 /* Largest extent of the bounds: H. */
 double scene_extent(const struct scene *scene);
 
-/* Derives light.direction, u, v and half, checks light and camera, and warns where the light cannot light the
- * scene. Call it after options have changed the set-up. Returns the exit status. */
-int setup_finish(struct scene *scene);
-
-/* The light's part of it: direction, u, v and half. */
-int light_finish(struct light *light);
-
-/* The four corners of a rectangle in scene space; of a sun, the four directions towards its corners (unit length
- * not kept). */
-void light_corners(const struct light *light, double corners[4][3]);
-
 /* Alpha at (u, v) in [0, 1]: bilinear, wrapped as the texture says. A hole is where this is below the mesh's cutoff. */
 float texture_alpha(const struct texture *texture, float u, float v);
 
-/* Adding to a scene under construction (importer, built-ins). Arrays are malloc'ed and taken over; both return the
+/* Adding to a scene under construction (importer, built-ins). Arrays are malloc'ed and taken over; all return the
  * index or -1 when memory ran out (the arrays are then freed). mesh->bounds_* are computed here. */
 int scene_add_mesh(struct scene *scene, struct mesh *mesh);
 int scene_add_instance(struct scene *scene, int mesh, const float scene_from_object[16], int casts, int receives);
+int scene_add_texture(struct scene *scene, const struct texture *texture);
+void mesh_free(struct mesh *mesh); /* one that was not added */
+
+/* Bounds in scene space. */
+void instance_bounds(const struct scene *scene, const struct instance *instance, double low[3], double high[3]);
+
+/* Computes bounds and triangle_count anew. */
+void scene_measure(struct scene *scene);
 
 #endif

@@ -1,4 +1,4 @@
-#include "scene_json.h"
+#include "scene/scene_json.h"
 
 #include <errno.h>
 #include <math.h>
@@ -7,15 +7,15 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "image.h"
-#include "message.h"
-#include "names.h"
-#include "option_values.h"
+#include "base/message.h"
+#include "base/names.h"
+#include "files/image.h"
 #include "scene/vector.h"
 
 enum { SETUP_FILE_MAX = 64 << 20 };
 
-cJSON *json_numbers(const double *values, int count) {
+/* What is not finite becomes null. NULL: out of memory. */
+static cJSON *json_numbers(const double *values, int count) {
   cJSON *array = cJSON_CreateArray();
   for (int i = 0; i < count && array; i++)
     cJSON_AddItemToArray(array, isfinite(values[i]) ? cJSON_CreateNumber(values[i]) : cJSON_CreateNull());

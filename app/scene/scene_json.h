@@ -4,7 +4,7 @@
 
 #include <cjson/cJSON.h>
 
-#include "scene.h"
+#include "scene/load.h"
 
 /* NULL: out of memory. The caller adds it to its own object or deletes it. */
 cJSON *scene_to_json(const struct scene *scene);
@@ -18,8 +18,5 @@ int setup_request(const char *path, const cJSON *json, struct scene_request *req
 /* Lays what the object holds over the set-up; members that are missing stay as they are. path is for messages. Exit
  * status. */
 int setup_apply_json(const char *path, const cJSON *json, struct setup *setup);
-
-/* An array of numbers; NULL: out of memory. What is not finite becomes null. */
-cJSON *json_numbers(const double *values, int count);
 
 #endif

@@ -1,17 +1,12 @@
+#include "scene/setup.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "message.h"
-#include "scene_parts.h"
-#include "vector.h"
+#include "base/message.h"
+#include "scene/vector.h"
 
 static const double pi = 3.14159265358979323846;
-
-static void set3(double out[3], double x, double y, double z) {
-  out[0] = x;
-  out[1] = y;
-  out[2] = z;
-}
 
 void setup_standard(struct scene *scene) {
   double h = scene_extent(scene), b[3];
@@ -21,14 +16,14 @@ void setup_standard(struct scene *scene) {
   struct setup *setup = &scene->setup;
   struct light *light = &setup->light;
   light->shape = PN_LIGHT_RECTANGLE;
-  set3(light->center, b[0], b[1] + 3 * h, b[2]);
-  set3(light->target, b[0], b[1], b[2]);
-  set3(light->up, 0, 0, -1);
+  v3_set(light->center, b[0], b[1] + 3 * h, b[2]);
+  v3_set(light->target, b[0], b[1], b[2]);
+  v3_set(light->up, 0, 0, -1);
   light->size[0] = light->size[1] = h;
   struct camera *camera = &setup->camera;
-  set3(camera->position, b[0], b[1] + 1.8 * h, b[2] + 2.6 * h);
-  set3(camera->target, b[0], b[1] + 0.38 * h, b[2]);
-  set3(camera->up, 0, 1, 0);
+  v3_set(camera->position, b[0], b[1] + 1.8 * h, b[2] + 2.6 * h);
+  v3_set(camera->target, b[0], b[1] + 0.38 * h, b[2]);
+  v3_set(camera->up, 0, 1, 0);
   camera->fov = 48.5;
   setup->size[0] = 1024;
   setup->size[1] = 768;

@@ -1,11 +1,10 @@
-#include "shape.h"
+#include "scene/shape.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene_parts.h"
-#include "vector.h"
+#include "scene/vector.h"
 
 static void *grown(void *array, uint32_t *room, uint32_t needed, size_t element) {
   if (needed <= *room) return array;
@@ -161,4 +160,10 @@ int shape_place(struct scene *scene, int mesh, const double x[3], const double y
 int shape_add_to(struct shape *shape, struct scene *scene, int casts, int receives) {
   int mesh = shape_finish(shape, scene, -1, 0);
   return mesh < 0 || scene_add_instance(scene, mesh, NULL, casts, receives) < 0 ? -1 : 0;
+}
+
+int shape_add_floor(struct scene *scene) {
+  struct shape shape = {0};
+  shape_floor(&shape, -2.5, -2.5, 2.5, 2.5, 0);
+  return shape_add_to(&shape, scene, 0, 1);
 }

@@ -3,7 +3,7 @@
 #ifndef PENUMBRA_APP_SCENE_SHAPE_H
 #define PENUMBRA_APP_SCENE_SHAPE_H
 
-#include "scene.h"
+#include "scene/scene.h"
 
 struct shape {
   float *positions, *texcoords;
@@ -41,5 +41,8 @@ int shape_place(struct scene *scene, int mesh, const double x[3], const double y
 
 /* shape_finish, and one instance where it stands. 0, or -1: out of memory. */
 int shape_add_to(struct shape *shape, struct scene *scene, int casts, int receives);
+
+/* A floor at y = 0, 5 wide, that only receives. 0, or -1: out of memory. */
+int shape_add_floor(struct scene *scene);
 
 #endif

@@ -4,6 +4,12 @@
 
 #include <math.h>
 
+static inline void v3_set(double out[3], double x, double y, double z) {
+  out[0] = x;
+  out[1] = y;
+  out[2] = z;
+}
+
 static inline double v3_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 static inline double v3_length(const double a[3]) { return sqrt(v3_dot(a, a)); }

@@ -1,8 +1,36 @@
 /* One mesh: from the host's description to buffers and bounds. */
-#ifndef PN_CASTERS_MESH_H
-#define PN_CASTERS_MESH_H
+#ifndef PNI_CASTERS_MESH_H
+#define PNI_CASTERS_MESH_H
 
-#include "casters/casters.h"
+#include "gl/buffer.h"
+#include "kept.h"
+
+typedef struct {
+  float min[3], max[3];
+} pni_box;
+
+/* Boxes over runs of triangles: they bound a mesh in any projection far more tightly than one box does. */
+enum { PNI_BOXES_MAX = 256, PNI_BOX_TRIANGLES = 64 };
+
+typedef struct pni_mesh_data {
+  uint32_t id;                           /* 0: a free slot */
+  pn_span positions, indices, texcoords; /* as described; data pointers are not kept */
+  int index_bytes;
+  uint32_t *kept_indices; /* positions and indices in memory: the mesh's triangles as described, for deformation */
+  size_t kept_count;
+  pni_vertices vertices;
+  pni_buffer own_positions, own_indices, own_texcoords; /* none where the host owns it */
+  size_t draw_count;                                    /* vertices or indices drawn */
+  pn_gl alpha_texture;
+  int alpha_channel;
+  float alpha_cutoff;
+  bool clockwise;
+  pni_box *boxes;
+  int box_count;
+  size_t box_triangles; /* each box is over that many of the triangles drawn, in order; 0: it says nothing of that */
+  uint32_t pose;        /* how often its positions changed */
+  pni_kept kept;        /* by a room above: what it finds out of the triangles */
+} pni_mesh_data;
 
 bool pni_box_sound(const float min[3], const float max[3]);
 pn_result pni_mesh_check(pni_gpu *gpu, const pn_mesh_desc *desc);

@@ -12,6 +12,9 @@
 
 #include "host/host.h"
 #include "host/shade.h"
+#include "host/view.h"
+#include "scene/load.h"
+#include "scene/setup.h"
 #include "scene/vector.h"
 
 static const double pi = 3.14159265358979323846;

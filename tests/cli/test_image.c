@@ -12,9 +12,9 @@
 
 #include <cmocka.h>
 
-#include "image.h"
-#include "label.h"
-#include "names.h"
+#include "files/image.h"
+#include "files/label.h"
+#include "base/names.h"
 
 enum { W = 37, H = 41 };
 

@@ -1,5 +1,7 @@
 /* Models of the tests' own making: transforms, alpha-tested materials, what is dropped, what is missing. */
+#include <fcntl.h>
 #include <math.h>
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,12 +9,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmocka.h>
 
-#include "image.h"
-#include "scene/scene.h"
+#include "files/image.h"
+#include "host/device.h"
+#include "scene/import_process.h"
+#include "scene/load.h"
 #include "scene/vector.h"
 
 static char folder[] = "/tmp/penumbra-import-XXXXXX";
@@ -241,7 +246,71 @@ static void test_holes_in_the_shadow(void **state) {
   assert_true(upper_right < 60 && lower_left < 60 && lower_right < 60);
 }
 
-int main(void) {
+/* ---- where and when ---------------------------------------------------------------------------------------------- */
+
+/* As a viewer does it: on another thread, while GL runs on this one. */
+struct job {
+  const char *name;
+  struct scene *scene;
+  int status;
+};
+
+static void *import(void *user) {
+  struct job *job = user;
+  struct scene_request request = {.name = job->name, .ground = GROUND_OFF};
+  job->status = scene_load(&request, &job->scene);
+  return NULL;
+}
+
+/* A strip of count quads, as a text that takes the importer some time. */
+static void write_strip(const char *name, int count) {
+  FILE *file = fopen(name, "wb");
+  assert_non_null(file);
+  for (int i = 0; i <= count; i++) fprintf(file, "v %d 0 0\nv %d 1 0\n", i, i);
+  for (int i = 0; i < count; i++) fprintf(file, "f %d %d %d %d\n", 2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2);
+  assert_int_equal(fclose(file), 0);
+}
+
+static int count_descriptors(void) {
+  int count = 0;
+  for (int fd = 0; fd < 256; fd++) count += fcntl(fd, F_GETFD) >= 0;
+  return count;
+}
+
+/* A GL context and its driver's threads and locks are there; two imports run at once, a third fails. */
+static void test_after_gl_and_on_threads(void **state) {
+  (void)state;
+  enum { JOBS = 3, QUADS = 40000 };
+  write_strip("a.obj", QUADS);
+  write_strip("b.obj", QUADS / 2);
+  write_text("broken.obj", "v 0 0 0\n");
+  struct device *device = NULL;
+  assert_int_equal(device_open("software", &device), 0);
+  int descriptors = count_descriptors();
+  struct scene *here = load("a.obj", 0);
+  assert_int_equal(here->triangle_count, 2 * QUADS);
+  scene_free(&here);
+  for (int round = 0; round < 3; round++) {
+    struct job jobs[JOBS] = {{.name = "a.obj"}, {.name = "b.obj"}, {.name = "broken.obj"}};
+    pthread_t threads[JOBS];
+    for (int i = 0; i < JOBS; i++) assert_int_equal(pthread_create(&threads[i], NULL, import, &jobs[i]), 0);
+    for (int i = 0; i < JOBS; i++) assert_int_equal(pthread_join(threads[i], NULL), 0);
+    assert_int_equal(jobs[0].status, 0);
+    assert_int_equal(jobs[1].status, 0);
+    assert_int_equal(jobs[2].status, 2);
+    assert_int_equal(jobs[0].scene->triangle_count, 2 * QUADS);
+    assert_int_equal(jobs[1].scene->triangle_count, QUADS);
+    assert_null(jobs[2].scene);
+    scene_free(&jobs[0].scene);
+    scene_free(&jobs[1].scene);
+  }
+  assert_int_equal(count_descriptors(), descriptors);
+  assert_int_equal(waitpid(-1, NULL, WNOHANG), -1); /* and no process is left */
+  device_close(&device);
+}
+
+int main(int argc, char **argv) {
+  import_serve(argc, argv);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_gltf_mask),
       cmocka_unit_test(test_gltf_factor),
@@ -249,6 +318,7 @@ int main(void) {
       cmocka_unit_test(test_obj_opacity),
       cmocka_unit_test(test_nested_transforms),
       cmocka_unit_test(test_dropped),
+      cmocka_unit_test(test_after_gl_and_on_threads),
       cmocka_unit_test(test_holes_in_the_shadow),
   };
   return cmocka_run_group_tests(tests, enter_folder, leave_folder);

@@ -11,7 +11,8 @@
 
 #include <cmocka.h>
 
-#include "scene/scene.h"
+#include "scene/import_process.h"
+#include "scene/load.h"
 
 enum { SIDE = 708, TRIANGLES = 2 * SIDE * SIDE }; /* 1,002,528 */
 
@@ -115,7 +116,8 @@ static void test_formats(void **state) {
   check("obj", write_obj);
 }
 
-int main(void) {
+int main(int argc, char **argv) {
+  import_serve(argc, argv);
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_formats)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

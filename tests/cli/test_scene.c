@@ -12,7 +12,8 @@
 #include <cmocka.h>
 
 #include "scene/builtin.h"
-#include "scene/scene.h"
+#include "scene/load.h"
+#include "scene/setup.h"
 #include "scene/vector.h"
 
 static struct scene *load(const char *name) {
