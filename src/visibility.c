@@ -99,26 +99,34 @@ pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver, pn_so
 
 /* ---- into the host's texture ------------------------------------------------------------------------------------- */
 
-static pn_result host_target(pni_gpu *gpu, const pn_receiver_desc *view, pn_gl texture, int layer, pni_target *out) {
+static pn_result host_target(pni_gpu *gpu, const pn_receiver_desc *view, const pn_target *target, pni_target *out) {
   pni_target_kind kind;
-  bool sound = pni_inspect_target(gpu, texture, &kind);
-  if (!sound || kind.width < view->width || kind.height < view->height || layer < 0 || layer >= kind.layers)
+  bool sound = pni_inspect_target(gpu, target->texture, &kind) && kind.channels != 0;
+  if (!sound || kind.width < view->width || kind.height < view->height || target->layer < 0 ||
+      target->layer >= kind.layers)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RESULT_TARGET,
-                    "texture %u cannot take a view of %d x %d in layer %d", texture, view->width, view->height, layer);
-  *out = (pni_target){{texture, kind.array, 0, layer}, 0};
+                    "texture %u cannot take a view of %d x %d in layer %d", target->texture, view->width, view->height,
+                    target->layer);
+  if (target->channels & ~kind.channels)
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RESULT_TARGET, "texture %u has not all of the channels 0x%x",
+                    target->texture, (unsigned)target->channels);
+  *out = (pni_target){{target->texture, kind.array, 0, target->layer}, target->channels};
   return PN_OK;
 }
 
-pn_result pn_visibility_into(pn_light *light, pn_receiver *receiver, pn_gl texture, int layer) {
+pn_result pn_visibility_into(pn_light *light, pn_receiver *receiver, const pn_target *into) {
   if (!light) return PN_ERROR_ARGUMENT;
+  pni_gpu *gpu = pni_light_gpu(light);
+  if (!into)
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_visibility_into: the target is NULL");
   pn_result result = check_pair(light, receiver);
   if (result != PN_OK) return result;
   pni_pair *pair = pni_pair_get(&light->object, &receiver->object);
   if (!pair) return PN_ERROR_OUT_OF_MEMORY;
   pni_target target;
   pni_enter(light->object.context);
-  result = pni_gpu_check_lost(pni_light_gpu(light));
-  if (result == PN_OK) result = host_target(pni_light_gpu(light), &receiver->desc, texture, layer, &target);
+  result = pni_gpu_check_lost(gpu);
+  if (result == PN_OK) result = host_target(gpu, &receiver->desc, into, &target);
   if (result == PN_OK) result = timed_visibility(light, receiver, pair, target);
   return pni_leave(light->object.context, result);
 }

@@ -118,46 +118,6 @@ static void describe_light(const struct setup *setup, const struct light *light,
   desc->map_height = setup->map[1];
 }
 
-/* Drivers compile for the state of a texture too, and whether its size is a power of two is part of that. */
-static int small_size(int size, int power_of_two, int other) {
-  int small = size & (size - 1) ? other : power_of_two;
-  return small < size ? small : size;
-}
-
-static int draw_small(struct client *client, pn_light *light, pn_light_desc *desc, pn_receiver *view, pn_fit fit) {
-  desc->fit = fit;
-  int status = client_check(client, pn_light_set(light, desc));
-  if (!status) status = client_check(client, pn_maps_update(light, client->casters, PN_GROUPS_ALL, &view, 1));
-  return status ? status : client_check(client, pn_visibility(light, view));
-}
-
-/* Drivers compile at the first draw, however early programs were linked: llvmpipe takes seconds. A light and a view of
- * their own take that on themselves, so that the first frame is a frame. The fit to all casters is drawn as well,
- * because nothing may cast a shadow on the little that the small view sees. */
-static int warm_up(struct client *client, const pn_light_desc *like, const char *spec) {
-  pn_light_desc desc = *like;
-  pn_receiver_desc small = client->view;
-  desc.map_width = small_size(like->map_width, 64, 48);
-  desc.map_height = small_size(like->map_height, 64, 48);
-  small.width = small_size(client->width, 64, 48);
-  small.height = small_size(client->height, 64, 48);
-  small.x = (client->width - small.width) / 2;
-  small.y = (client->height - small.height) / 2;
-  pn_light *light = NULL;
-  pn_receiver *view = NULL;
-  client->warming = 1;
-  int status = client_check(client, pn_light_create(client->context, &light));
-  if (!status) status = client_check(client, pn_light_technique(light, spec, NULL, 0));
-  if (!status) status = client_check(client, pn_receiver_create(client->context, &view));
-  if (!status) status = client_check(client, pn_receiver_set(view, &small));
-  if (!status) status = draw_small(client, light, &desc, view, like->fit);
-  if (!status && like->fit != PN_FIT_CASTERS) status = draw_small(client, light, &desc, view, PN_FIT_CASTERS);
-  pn_receiver_destroy(&view);
-  pn_light_destroy(&light);
-  client->warming = 0;
-  return status;
-}
-
 int client_light(struct client *client, const struct setup *setup, const struct light *light, const char *spec,
                  pn_light **out) {
   pn_light_desc desc;
@@ -169,8 +129,7 @@ int client_light(struct client *client, const struct setup *setup, const struct 
     client->reason[0] = 0;
   }
   if (!status) status = client_check(client, pn_light_set(*out, &desc));
-  if (!status && spec) status = client_check(client, pn_prepare(client->context, spec));
-  if (!status && spec) status = warm_up(client, &desc, spec);
+  if (!status && spec) status = client_check(client, pn_prepare(client->context, spec, &client->view));
   return status;
 }
 

@@ -308,8 +308,7 @@ typedef struct {
   float view[16];          /* eye from scene */
   float projection[16];    /* clip from eye */
   int depth_zero_to_one;   /* nonzero: the projection maps to [0, 1] (glClipControl with GL_ZERO_TO_ONE) */
-  /* the depth that means nothing was drawn: 1, or 0 for reversed depth. PN_RECEIVER_DEFAULTS has 1 */
-  float background_depth;
+  int reversed_depth;      /* nonzero: near is 1, and depth 0 means that nothing was drawn; else depth 1 does */
   /* 0: the tangent plane comes from depth. Same size and view rectangle as the depth texture (framebuffer: as the
    * view) */
   pn_gl normal_texture;
@@ -320,7 +319,7 @@ typedef struct {
   int scale;          /* 1, 2 or 4: visibility is computed at 1/scale and brought up along depth and plane; 0 = 1 */
   pn_format format;   /* of the results */
 } pn_receiver_desc;
-#define PN_RECEIVER_DEFAULTS { 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0, 1.0f, 0, PN_NORMAL_SIGNED, 0, 0, 1, PN_FORMAT_R16F }
+#define PN_RECEIVER_DEFAULTS {0} /* as a zeroed one */
 
 PN_API pn_result pn_receiver_create(pn_context *context, pn_receiver **out);
 PN_API void pn_receiver_destroy(pn_receiver **receiver); /* and its results; clears the handle */
@@ -412,9 +411,12 @@ PN_API pn_result pn_technique_parse(const char *spec, const pn_technique **techn
 /* Changes one parameter of the light's technique; a choice by its index. */
 PN_API pn_result pn_light_parameter(pn_light *light, const char *name, double value);
 
-/* Compiles now what a light with this spec will need, so that no frame has to. spec NULL: the light technique's
- * default. */
-PN_API pn_result pn_prepare(pn_context *context, const char *spec);
+
+/* Compiles now what a light with this spec will need for a view like that one, and draws a pixel with all of it, because
+ * drivers finish compiling at the first draw: no frame has to. spec NULL: PN_TECHNIQUE_DEFAULT. like: a description as
+ * pn_receiver_set will get it. Of its textures it counts only whether there are any, and of its sizes only whether they are
+ * powers of two, so that it may be filled before they exist. NULL: views as most hosts have them, with normals and without. */
+PN_API pn_result pn_prepare(pn_context *context, const char *spec, const pn_receiver_desc *like);
 
 /* ---- a frame ----------------------------------------------------------------------------------------------------- */
 
@@ -439,9 +441,20 @@ typedef struct {
  * same texture while size and format stay. */
 PN_API pn_result pn_result_image(pn_light *light, pn_receiver *receiver, pn_image *out);
 
-/* As pn_visibility, but written into the host's own texture: 2D (layer 0) or a layer of a 2D array, of the view's
- * size at least, R8, R16F, R32F or any colour-renderable format whose red channel will do. Written at the origin. */
-PN_API pn_result pn_visibility_into(pn_light *light, pn_receiver *receiver, pn_gl texture, int layer);
+/* Channels of a texture, to be added up. */
+enum { PN_CHANNEL_RED = 1, PN_CHANNEL_GREEN = 2, PN_CHANNEL_BLUE = 4, PN_CHANNEL_ALPHA = 8 };
+
+/* Where a result goes in the host's own memory. */
+typedef struct {
+  /* 2D or 2D array, of the view's size at least, of any colour-renderable format that is no integer one. Written at the
+   * origin of level 0 */
+  pn_gl texture;
+  int layer;    /* of an array; 0 of a 2D texture */
+  int channels; /* that are written, each with the same visibility: four lights fit into one RGBA texture. 0: all */
+} pn_target;
+
+/* As pn_visibility, but written into a texture of the host's; what pn_result_image tells stays as it was. */
+PN_API pn_result pn_visibility_into(pn_light *light, pn_receiver *receiver, const pn_target *target);
 
 /* The soft shadow map of the pair's last pn_visibility with the technique `ssm` (Soft Shadow Maps, section 3): how much
  * of the light is hidden, as a map in (s, t) of the light (docs/space.md), for hosts that project it themselves. It

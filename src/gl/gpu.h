@@ -70,6 +70,7 @@ typedef struct pni_gpu {
 
   size_t memory; /* bytes in textures and buffers */
   bool timing;
+  bool only_errors; /* other messages are kept back */
   int debug; /* PN_DEBUG_...: what techniques tell of what they did */
 
   pn_gl vertex_array; /* without attributes: full-screen triangles */

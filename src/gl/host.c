@@ -25,7 +25,7 @@ void pni_free(pni_gpu *gpu, void *memory) {
 }
 
 static void send(pni_gpu *gpu, pn_log_level level, pn_message message, const char *format, va_list arguments) {
-  if (!gpu->desc.log) return;
+  if (!gpu->desc.log || (gpu->only_errors && level != PN_LOG_ERROR)) return;
   char text[1024];
   vsnprintf(text, sizeof text, format, arguments);
   for (char *c = text; *c; c++)

@@ -117,22 +117,36 @@ void pni_inspect_red(pni_gpu *gpu, pn_gl texture, int *bits, bool *is_float) {
   pni_bind_scratch(gpu, GL_TEXTURE_2D, 0);
 }
 
+/* Of what is attached for drawing; integers are none. */
+static int color_channels(pni_gpu *gpu) {
+  static const GLenum sizes[4] = {GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, GL_FRAMEBUFFER_ATTACHMENT_GREEN_SIZE,
+                                  GL_FRAMEBUFFER_ATTACHMENT_BLUE_SIZE, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE};
+  GLenum target = GL_DRAW_FRAMEBUFFER, point = GL_COLOR_ATTACHMENT0;
+  GLint type = attachment_parameter(gpu, target, point, GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE);
+  int channels = 0;
+  for (int i = 0; i < 4 && type != GL_INT && type != GL_UNSIGNED_INT; i++)
+    if (attachment_parameter(gpu, target, point, sizes[i]) > 0) channels |= 1 << i;
+  return channels;
+}
+
 bool pni_inspect_target(pni_gpu *gpu, pn_gl texture, pni_target_kind *out) {
   GLenum color = GL_COLOR_ATTACHMENT0;
   GLint layered = 0;
+  int channels = 0;
   if (!texture || !pni_texture_exists(gpu, texture)) return false;
   clear_framebuffer(gpu);
   GL(gpu, FramebufferTexture)(GL_DRAW_FRAMEBUFFER, color, texture, 0);
   GL(gpu, DrawBuffers)(1, &color);
   bool sound = GL(gpu, CheckFramebufferStatus)(GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   if (sound) layered = attachment_parameter(gpu, GL_DRAW_FRAMEBUFFER, color, GL_FRAMEBUFFER_ATTACHMENT_LAYERED);
+  if (sound) channels = color_channels(gpu);
   GL(gpu, FramebufferTexture2D)(GL_DRAW_FRAMEBUFFER, color, GL_TEXTURE_2D, 0, 0);
   if (!sound) return false;
   GLenum target = layered ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
   pni_bind_scratch(gpu, target, texture);
   *out = (pni_target_kind){layered != 0, level_parameter(gpu, target, GL_TEXTURE_WIDTH),
                            level_parameter(gpu, target, GL_TEXTURE_HEIGHT),
-                           layered ? level_parameter(gpu, target, GL_TEXTURE_DEPTH) : 1};
+                           layered ? level_parameter(gpu, target, GL_TEXTURE_DEPTH) : 1, channels};
   pni_bind_scratch(gpu, target, 0);
   return true;
 }

@@ -31,6 +31,7 @@ void pni_inspect_red(pni_gpu *gpu, pn_gl texture, int *bits, bool *is_float);
 typedef struct {
   bool array;
   int width, height, layers;
+  int channels; /* that it has: bit 0 red .. bit 3 alpha */
 } pni_target_kind;
 bool pni_inspect_target(pni_gpu *gpu, pn_gl texture, pni_target_kind *out);
 

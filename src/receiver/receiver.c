@@ -55,9 +55,9 @@ static pn_result check_values(pni_gpu *gpu, const pn_receiver_desc *d) {
   if ((d->depth_texture != 0) == (d->use_framebuffer != 0))
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_SOURCE,
                     "one of depth_texture and use_framebuffer must be set");
-  if (!pni_floats_finite(d->view, 16) || !pni_floats_finite(d->projection, 16) || !isfinite(d->background_depth))
+  if (!pni_floats_finite(d->view, 16) || !pni_floats_finite(d->projection, 16))
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX,
-                    "view, projection or background depth is not finite");
+                    "view or projection is not finite");
   if (d->scale != 0 && d->scale != 1 && d->scale != 2 && d->scale != 4)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_SCALE, "scale %d is not 1, 2 or 4", d->scale);
   if ((int)d->format < PN_FORMAT_R16F || d->format > PN_FORMAT_R8)
@@ -189,7 +189,7 @@ static pn_result set_receiver(pn_receiver *receiver, pn_receiver_desc d) {
   receiver->desc = d;
   receiver->scene_from_clip = scene_from_clip;
   receiver->scene_from_pixel = scene_from_pixel;
-  find_depth_error(&source, pni_receiver_background(receiver) < 0.5f, receiver->depth_error);
+  find_depth_error(&source, d.reversed_depth != 0, receiver->depth_error);
   receiver->normal_error = normal_error;
   receiver->has_planes = false;
   receiver->set = true;

@@ -8,7 +8,7 @@ static pni_gpu *gpu_of(const pn_receiver *receiver) { return &receiver->object.c
 
 /* ---- depth ------------------------------------------------------------------------------------------------------- */
 
-float pni_receiver_background(const pn_receiver *receiver) { return receiver->desc.background_depth; }
+float pni_receiver_background(const pn_receiver *receiver) { return receiver->desc.reversed_depth ? 0 : 1; }
 
 void pni_receiver_low_size(const pn_receiver *receiver, int *width, int *height) {
   int scale = receiver->desc.scale;

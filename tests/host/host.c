@@ -184,7 +184,7 @@ pn_receiver_desc host_receiver_desc(const camera *view, const depth_target *targ
   memcpy(out.view, view->view, sizeof out.view);
   memcpy(out.projection, view->projection, sizeof out.projection);
   out.depth_zero_to_one = view->zero_to_one;
-  out.background_depth = view->reversed ? 0.0f : 1.0f;
+  out.reversed_depth = view->reversed;
   return out;
 }
 

@@ -428,7 +428,7 @@ static pn_result bad_technique(host *h, int k) {
   if (k == 22) return pn_light_parameter(light, "samples", 1e9);
   if (k == 23) return pn_light_parameter(light, NULL, 1);
   if (k == 24) return pn_light_technique(light, NULL, why, sizeof why);
-  return pn_prepare(h->context, "nothing");
+  return pn_prepare(h->context, "nothing", NULL);
 }
 
 static void test_techniques(void **state) {
@@ -523,12 +523,12 @@ static void test_no_result_yet(void **state) {
 static pn_result bad_target(host *h, int k) {
   (void)h;
   switch (k) {
-  case 0: return pn_visibility_into(light, seen.receiver, 0, 0);
-  case 1: return pn_visibility_into(light, seen.receiver, 99999, 0);
-  case 2: return pn_visibility_into(light, seen.receiver, small_color, 0);
-  case 3: return pn_visibility_into(light, seen.receiver, seen.target.depth, 0);
-  case 4: return pn_visibility_into(light, seen.receiver, color, 1);
-  default: return pn_visibility_into(light, seen.receiver, color, -1);
+  case 0: return pn_visibility_into(light, seen.receiver, &(pn_target){0, 0, 0});
+  case 1: return pn_visibility_into(light, seen.receiver, &(pn_target){99999, 0, 0});
+  case 2: return pn_visibility_into(light, seen.receiver, &(pn_target){small_color, 0, 0});
+  case 3: return pn_visibility_into(light, seen.receiver, &(pn_target){seen.target.depth, 0, 0});
+  case 4: return pn_visibility_into(light, seen.receiver, &(pn_target){color, 1, 0});
+  default: return pn_visibility_into(light, seen.receiver, &(pn_target){color, -1, 0});
   }
 }
 
@@ -673,7 +673,7 @@ static void test_null_objects(void **state) {
   assert_int_equal(pn_visibility(NULL, NULL), ARGUMENT);
   assert_int_equal(pn_result_image(NULL, NULL, &image), ARGUMENT);
   assert_int_equal(pn_mesh_add(NULL, NULL, &m), ARGUMENT);
-  assert_int_equal(pn_prepare(NULL, "pcss"), ARGUMENT);
+  assert_int_equal(pn_prepare(NULL, "pcss", NULL), ARGUMENT);
   assert_int_equal(pn_state_begin(NULL), ARGUMENT);
   assert_int_equal(pn_times(NULL, NULL, 0, 0), 0);
   assert_int_equal(pn_debug_image(NULL, NULL, 0, NULL, NULL), 0);

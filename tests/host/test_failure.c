@@ -49,7 +49,7 @@ static void *allocate(void *user, void *old, size_t bytes) {
 
 static pn_result create(void) { return pn_context_create(&desc, &h.context); }
 
-static pn_result prepare(void) { return pn_prepare(h.context, "pcss"); }
+static pn_result prepare(void) { return pn_prepare(h.context, "pcss", NULL); }
 
 static pn_result make_casters(void) { return pn_casters_create(h.context, &h.casters); }
 

@@ -197,7 +197,7 @@ static void test_into(void **state) {
   gl.BindTexture(GL_TEXTURE_2D_ARRAY, 0);
   pn_receiver_desc desc = plain();
   assert_int_equal(pn_receiver_set(v.receiver, &desc), PN_OK);
-  assert_int_equal(pn_visibility_into(light, v.receiver, texture, 1), PN_OK);
+  assert_int_equal(pn_visibility_into(light, v.receiver, &(pn_target){texture, 1, 0}), PN_OK);
   gl.BindTexture(GL_TEXTURE_2D_ARRAY, texture);
   gl.GetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_RED, GL_FLOAT, data);
   gl.BindTexture(GL_TEXTURE_2D_ARRAY, 0);

@@ -32,7 +32,7 @@ static pn_result prepare_with(host *h, const char *text) {
   memset(&h->log, 0, sizeof h->log);
   write_shader(text);
   assert_int_equal(pn_reload_shaders(h->context), PN_OK);
-  return pn_prepare(h->context, "hard");
+  return pn_prepare(h->context, "hard", NULL);
 }
 
 static void test_broken(void **state) {

@@ -52,7 +52,7 @@ static pn_result end(int i) {
   return pn_state_end(h.context);
 }
 
-static pn_result prepare(int i) { return pn_prepare(h.context, techniques[i]); }
+static pn_result prepare(int i) { return pn_prepare(h.context, techniques[i], NULL); }
 
 static pn_result make_casters(int i) {
   (void)i;
@@ -108,14 +108,14 @@ static pn_result resize(int i) {
 
 static pn_result see_into(int i) {
   (void)i;
-  return pn_visibility_into(lights[0], receivers[0], into, 1);
+  return pn_visibility_into(lights[0], receivers[0], &(pn_target){into, 1, 0});
 }
 
 /* A light whose casters are all left out: results are filled without a map. */
 static pn_result see_nothing(int i) {
   pn_result result = pn_maps_update(lights[i], h.casters, 0, NULL, 0);
   if (result == PN_OK) result = pn_visibility(lights[i], receivers[0]);
-  if (result == PN_OK) result = pn_visibility_into(lights[i], receivers[0], into, 0);
+  if (result == PN_OK) result = pn_visibility_into(lights[i], receivers[0], &(pn_target){into, 0, 0});
   return result;
 }
 

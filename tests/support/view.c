@@ -166,7 +166,7 @@ void view_free(view *v) {
 pn_receiver_desc view_desc(const view *v, bool normals) {
   pn_receiver_desc d = PN_RECEIVER_DEFAULTS;
   d.depth_texture = v->depth;
-  d.background_depth = v->camera.reversed ? 0 : 1;
+  d.reversed_depth = v->camera.reversed;
   d.depth_zero_to_one = v->camera.reversed;
   d.normal_texture = normals ? v->normal : 0;
   d.format = PN_FORMAT_R32F;

@@ -282,7 +282,7 @@ static void test_compiled_programs_are_listed(void **state) {
       assert_ok(pn_receiver_set(s.receiver, &desc));
       const char *name = pn_technique_at(i)->name;
       free(stage_visibility(&s, &light, strcmp(name, "average") ? name : "average:samples=2"));
-      assert_ok(pn_prepare(s.context, name));
+      assert_ok(pn_prepare(s.context, name, &desc));
     }
   int count = 0;
   for (const pni_program *p = s.context->gpu.programs; p; p = p->next, count++)
