@@ -10,6 +10,7 @@ typedef struct {
   pni_object object; /* needs the light and the receiver */
   pni_texture image; /* the result */
   bool drawn;
+  bool asked;         /* the last draw was the technique's: something cast */
   pni_texture low;    /* at reduced resolution, before it is brought up */
   pni_texture search; /* what a search did, when debugging */
   pni_kept kept;      /* by the technique of the last draw */

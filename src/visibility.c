@@ -19,7 +19,8 @@ static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pni_pai
   job.low = &pair->low;
   job.search = &pair->search;
   job.target = target;
-  if (light->maps.fit.empty) {
+  pair->asked = !light->maps.fit.empty;
+  if (!pair->asked) {
     pni_pass pass = pni_job_pass(&job, NULL, (pni_program_key){0});
     result = pni_fill(job.gpu, "nothing casts", &pass, 1);
     pni_job_mark(&job, "visibility");
@@ -89,7 +90,7 @@ pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver, pn_so
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
                     "pn_soft_shadow_map_image: receiver or out is NULL");
   pni_pair *pair = pni_pair_find(&light->object, &receiver->object);
-  bool some = pair && pair->kept.state && light->technique->soft_shadow_map &&
+  bool some = pair && pair->asked && pair->kept.state && light->technique->soft_shadow_map &&
               pair->kept.kind == &light->technique->pair_kind &&
               light->technique->soft_shadow_map(pair->kept.state, out);
   if (!some)

@@ -60,10 +60,10 @@ static void test_broken(void **state) {
 /* What is in the directory is what runs: everything in shadow. */
 static void test_edited(void **state) {
   host *h = *state;
-  assert_int_equal(prepare_with(h,
-                                "float pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, "
-                                "pn_Receiver r) { return 0.0; }\n"),
-                   PN_OK);
+  assert_int_equal(
+      prepare_with(h, "pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, "
+                      "pn_ShadedPoint r) { return 0.0; }\n"),
+      PN_OK);
   pn_light_desc desc = host_light_desc();
   lit_view lit;
   assert_int_equal(host_lit_view(h, CAST_MEMORY, &desc, "hard", &lit), PN_OK);

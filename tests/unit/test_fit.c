@@ -346,7 +346,9 @@ static void check_visible(bool sun, uint64_t seed, bool sheared) {
         region.most[k] = fmax(region.most[k], value);
       }
     }
+    static const pni_emission wide = {{0.8, 0.8}};
     pni_fit_request request = request_of(&f, 64);
+    request.emission = &wide;
     for (int k = 0; k < 2 && sheared; k++) request.shear[k] = random_in(&seed, -0.8, 0.8);
     request.visible = &region;
     pni_fit_result r = fit(&c, &request);
