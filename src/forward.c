@@ -120,7 +120,8 @@ static pn_result fill_blocks(pn_context *context, pn_light *const *lights, int c
                          sizeof blocks);
 }
 
-/* Every sampler gets a unit of its own kind, lights or not: two kinds of sampler on one unit are an error when drawing. */
+/* Every sampler gets a unit of its own kind, lights or not: two kinds of sampler on one unit are an error when
+ * drawing. */
 static int fill_samplers(pn_light *const *lights, int count, int first, pni_host_sampler *out) {
   for (int i = 0; i < PN_FORWARD_LIGHTS_MAX; i++) {
     int unit = first + 2 * (i < count ? i : 0);

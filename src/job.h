@@ -1,4 +1,5 @@
-/* What a technique is asked to do, whole: the same description in pn_maps_update and in pn_visibility, for every technique. */
+/* What a technique is asked to do, whole: the same description in pn_maps_update and in pn_visibility, for every
+ * technique. */
 #ifndef PNI_JOB_H
 #define PNI_JOB_H
 

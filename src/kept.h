@@ -1,5 +1,5 @@
-/* What one room keeps with another one's object, which knows nothing of it but how to free it: a technique with a light or
- * with a pair, the silhouettes with a mesh. */
+/* What one room keeps with another one's object, which knows nothing of it but how to free it: a technique with a
+ * light or with a pair, the silhouettes with a mesh. */
 #ifndef PNI_KEPT_H
 #define PNI_KEPT_H
 

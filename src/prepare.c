@@ -1,5 +1,5 @@
-/* pn_prepare: what a light will need is compiled by drawing it once: a scene of two triangles and a small view go through
- * the same calls as the host's frames will. */
+/* pn_prepare: what a light will need is compiled by drawing it once: a scene of two triangles and a small view go
+ * through the same calls as the host's frames will. */
 #include <string.h>
 
 #include "gl/host.h"
@@ -7,8 +7,9 @@
 
 /* ---- the textures of the view ------------------------------------------------------------------------------------ */
 
-/* Sides of the view. Drivers compile for the state of a texture too, and whether its sides are powers of two is part of that:
- * so they are, or are not, those of the images that the view's bounds are reduced into in steps included (2 and 3). */
+/* Sides of the view. Drivers compile for the state of a texture too, and whether its sides are powers of two is part
+ * of that: so they are, or are not, those of the images that the view's bounds are reduced into in steps included (2
+ * and 3). */
 enum { POWER = 32, NO_POWER = 33 };
 
 typedef struct {

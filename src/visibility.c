@@ -1,4 +1,4 @@
-/* From maps to visibility buffers: into the library's own images or the host's, and what can be looked at on the way. */
+/* From maps to visibility buffers: into images of the library or of the host, and what can be looked at on the way. */
 #include <string.h>
 
 #include "gl/device.h"

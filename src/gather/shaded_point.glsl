@@ -1,5 +1,5 @@
-// The point that is shaded: a surface in the light's space, with the errors its numbers carry. Those errors are the only
-// biases there are: derived from the precision of depth and map, not chosen.
+// The point that is shaded: a surface in the light's space, with the errors its numbers carry. Those errors are the
+// only biases there are: derived from the precision of depth and map, not chosen.
 #include "maps/maps.glsl"
 
 struct pn_ShadedPoint {

@@ -1,5 +1,5 @@
-/* GL's state as the library's passes set it, remembered so that no call sets what is set already. What the host may have
- * changed is forgotten: at every entry, and after each of its callbacks. */
+/* GL's state as the library's passes set it, remembered so that no call sets what is set already. What the host may
+ * have changed is forgotten: at every entry, and after each of its callbacks. */
 #ifndef PNI_GL_BOUND_H
 #define PNI_GL_BOUND_H
 
@@ -10,8 +10,8 @@ enum { PNI_BLOCK_BINDING = 0 };
 
 /* The host was here. */
 void pni_forget(pni_gpu *gpu);
-/* Before anything that depends on state: switches off everything that could change what a pass of the library draws, where
- * that is not known to be off. */
+/* Before anything that depends on state: switches off everything that could change what a pass of the library draws,
+ * where that is not known to be off. */
 void pni_ready(pni_gpu *gpu);
 /* The same, whatever is known. */
 void pni_neutral(pni_gpu *gpu);

@@ -1,6 +1,6 @@
-/* Every GL function the library calls. The table holds pointers to function pointers: with libepoxy they point at its lazily
- * resolving variables, with a host's loader at the storage beside the table. Call as GL(gpu, DrawArrays)(...); builds with
- * assertions count the calls. */
+/* Every GL function the library calls. The table holds pointers to function pointers: with libepoxy they point at its
+ * lazily resolving variables, with a host's loader at the storage beside the table. Call as GL(gpu, DrawArrays)(...);
+ * builds with assertions count the calls. */
 #ifndef PN_GL_FUNCTIONS_H
 #define PN_GL_FUNCTIONS_H
 

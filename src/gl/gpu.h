@@ -6,8 +6,8 @@
 #include <penumbra/penumbra.h>
 #include "gl/functions.h"
 
-/* Texture units the library uses, from 0: state saving covers exactly these. A program's samplers take them in the order in
- * which the compiler lists them. */
+/* Texture units the library uses, from 0: state saving covers exactly these. A program's samplers take them in the
+ * order in which the compiler lists them. */
 enum {
   PNI_UNITS = 12,
   PNI_UNIT_SCRATCH = PNI_UNITS - 1, /* for looking at textures and filling them: no sampler's */
@@ -71,7 +71,7 @@ typedef struct pni_gpu {
   size_t memory; /* bytes in textures and buffers */
   bool timing;
   bool only_errors; /* other messages are kept back */
-  int debug; /* PN_DEBUG_...: what techniques tell of what they did */
+  int debug;        /* PN_DEBUG_...: what techniques tell of what they did */
 
   pn_gl vertex_array; /* without attributes: full-screen triangles */
   pn_gl framebuffer;  /* the one the passes draw to */

@@ -40,8 +40,8 @@ static void clear_framebuffer(pni_gpu *gpu) {
     GL(gpu, FramebufferTexture2D)(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + i, GL_TEXTURE_2D, 0, 0);
 }
 
-/* GL 3.3 cannot ask a texture for its target, and binding it to the wrong one is an error; attaching it to a framebuffer
- * tells what is needed. */
+/* GL 3.3 cannot ask a texture for its target, and binding it to the wrong one is an error; attaching it to a
+ * framebuffer tells what is needed. */
 bool pni_inspect_depth(pni_gpu *gpu, pn_gl texture, pni_depth_source *out) {
   GLenum none = GL_NONE;
   clear_framebuffer(gpu);

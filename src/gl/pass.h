@@ -73,15 +73,15 @@ void pni_draw_vertices(pni_gpu *gpu, const pni_vertices *vertices, int index_byt
 /* One value in an image: the host's own texture may be larger than the view, only that is written. */
 pn_result pni_fill(pni_gpu *gpu, const char *name, const pni_pass *where, float value);
 
-/* As many vertices as a texel says that the GPU itself wrote: arguments is an RGBA32UI texture one texel high, each of its
- * texels (count, 1, 0, 0). pni_counts_take copies them into a buffer, and pni_draw_counted draws as texel index says, from
- * gl_VertexID alone. Nothing is read back. Where the device has no indirect draws, most vertices are drawn, and the shaders
- * have to put what is past the count out of sight. */
+/* As many vertices as a texel says that the GPU itself wrote: arguments is an RGBA32UI texture one texel high, each
+ * of its texels (count, 1, 0, 0). pni_counts_take copies them into a buffer, and pni_draw_counted draws as texel
+ * index says, from gl_VertexID alone. Nothing is read back. Where the device has no indirect draws, most vertices are
+ * drawn, and the shaders have to put what is past the count out of sight. */
 pn_result pni_counts_take(pni_gpu *gpu, const pni_texture *arguments, pni_buffer *buffer);
 void pni_draw_counted(pni_gpu *gpu, const pni_buffer *buffer, int index, int most);
 
-/* For the host's draw callback: the texture on the unit that it is told of. Whatever it leaves is forgotten: the pass has to
- * be resumed. */
+/* For the host's draw callback: the texture on the unit that it is told of. Whatever it leaves is forgotten: the pass
+ * has to be resumed. */
 void pni_host_begin(pni_gpu *gpu, const pni_texture *peel);
 void pni_host_end(pni_gpu *gpu);
 

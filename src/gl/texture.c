@@ -72,8 +72,8 @@ static size_t texture_bytes(const pni_texture *t) {
   return bytes;
 }
 
-/* The number of levels comes first: Mesa allocates by it, and where it has to guess, for small arrays, some images cannot be
- * drawn into. */
+/* The number of levels comes first: Mesa allocates by it, and where it has to guess, for small arrays, some images
+ * cannot be drawn into. */
 static void define_texture(pni_gpu *gpu, const pni_texture *t) {
   GLenum target = target_of(t);
   const format_info *info = &formats[t->format];

@@ -32,8 +32,8 @@ typedef struct {
   size_t bytes;
 } pni_texture;
 
-/* A texture of that shape, its contents undefined; sampling is nearest, clamped, without comparison. If texture already has
- * that shape nothing happens. The old one is freed only once the new one exists. label: for debuggers. */
+/* A texture of that shape, its contents undefined; sampling is nearest, clamped, without comparison. If texture
+ * already has that shape nothing happens. The old one is freed only once the new one exists. label: for debuggers. */
 pn_result pni_texture_shape(pni_gpu *gpu, pni_texture *texture, const char *label, pni_format format, int width,
                             int height, int layers, int levels);
 void pni_texture_free(pni_gpu *gpu, pni_texture *texture, bool abandon);
@@ -50,16 +50,16 @@ void pni_texture_limit(pni_gpu *gpu, const pni_texture *texture, int first, int 
 /* A level of a texture as an image to draw into; layer: of an array. */
 pni_image pni_image_of(const pni_texture *texture, int level, int layer);
 
-/* Reads the first width x height texels of a level and layer, which waits for the GPU; channels: as many as out wants. Floats
- * from float formats, unsigned integers from integer ones. */
+/* Reads the first width x height texels of a level and layer, which waits for the GPU; channels: as many as out
+ * wants. Floats from float formats, unsigned integers from integer ones. */
 void pni_texture_read(pni_gpu *gpu, const pni_texture *texture, int level, int layer, int width, int height,
                       int channels, void *out);
 
 /* Makes level and layer of a colour texture what the next read of pixels reads. */
 void pni_read_from(pni_gpu *gpu, const pni_texture *texture, int level, int layer);
 
-/* A colour or depth texture into a layer of an array. Images of an array that are made from one another are drawn aside and
- * copied in: reading one layer while drawing another is undefined in GL 3.3. */
+/* A colour or depth texture into a layer of an array. Images of an array that are made from one another are drawn
+ * aside and copied in: reading one layer while drawing another is undefined in GL 3.3. */
 void pni_copy_to_layer(pni_gpu *gpu, const pni_texture *from, const pni_texture *to, int layer);
 
 /* Accounts for bytes in GL against the host's limit; pni_memory_give takes them off again. */

@@ -1,5 +1,5 @@
-/* What shaders are told of a light and its maps: the uniform block of maps/maps.glsl, member for member. A test asks the
- * compiler for every offset and holds the two together. */
+/* What shaders are told of a light and its maps: the uniform block of maps/maps.glsl, member for member. A test asks
+ * the compiler for every offset and holds the two together. */
 #ifndef PNI_MAPS_BLOCK_H
 #define PNI_MAPS_BLOCK_H
 

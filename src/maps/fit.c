@@ -63,8 +63,8 @@ static void span_add(span3 *span, const fitting *f, const double p[3]) {
   span->any = true;
 }
 
-/* The box's part before the light: corners, and where its edges meet a plane close before it. A box that lies nearer than
- * that altogether has its own plane, as close to its farthest corner in proportion. */
+/* The box's part before the light: corners, and where its edges meet a plane close before it. A box that lies nearer
+ * than that altogether has its own plane, as close to its farthest corner in proportion. */
 static span3 box_span(const fitting *f, const double p[8][3]) {
   span3 span = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, false};
   bool sun = is_parallel(f->request);

@@ -1,5 +1,5 @@
-/* The list of a light's maps: what a technique may want of it, and what it consists of. An entry may be a tile of a wide light
- * or the view from a point of it: techniques do not care. */
+/* The list of a light's maps: what a technique may want of it, and what it consists of. An entry may be a tile of a
+ * wide light or the view from a point of it: techniques do not care. */
 #ifndef PNI_MAPS_LIST_H
 #define PNI_MAPS_LIST_H
 

@@ -1,5 +1,5 @@
-// A light and its list of maps, each with its layers of depth: tiles of a wide light, views from points of it. Techniques
-// read maps only through these functions, so they never know how a map is laid out.
+// A light and its list of maps, each with its layers of depth: tiles of a wide light, views from points of it.
+// Techniques read maps only through these functions, so they never know how a map is laid out.
 #include "space/limits.glsl"
 #include "space/space.glsl"
 

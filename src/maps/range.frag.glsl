@@ -1,7 +1,7 @@
-// Largest and smallest w of neighbourhoods, and the smallest beside what is empty (PN_EVERYTHING where all is; pyramids of three
-// channels keep it). A pyramid's level takes 2 x 2 texels of the one below; a stack's level
-// four texels of the one below, half a neighbourhood apart (Bitmask Soft Shadows, Fig. 7). The first level reads the
-// depth map; over quads each texel there stands for itself and its right and upper neighbours.
+// Largest and smallest w of neighbourhoods, and the smallest beside what is empty (PN_EVERYTHING where all is;
+// pyramids of three channels keep it). A pyramid's level takes 2 x 2 texels of the one below; a stack's level four
+// texels of the one below, half a neighbourhood apart (Bitmask Soft Shadows, Fig. 7). The first level reads the depth
+// map; over quads each texel there stands for itself and its right and upper neighbours.
 #include "shaders/precision.glsl"
 #include "space/limits.glsl"
 #if PN_FIRST

@@ -1,5 +1,6 @@
-// How depth goes on around each pixel of a view that comes without normals: its slopes along x and y, and bounds on their
-// errors. They are the same for every light and every pass of a frame, and cost five fetches each, so they are found once.
+// How depth goes on around each pixel of a view that comes without normals: its slopes along x and y, and bounds on
+// their errors. They are the same for every light and every pass of a frame, and cost five fetches each, so they are
+// found once.
 #include "shaders/precision.glsl"
 #define PN_MASK 0 // slopes go on across what does not receive
 #include "receiver/depth.glsl"

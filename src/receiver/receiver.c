@@ -56,8 +56,7 @@ static pn_result check_values(pni_gpu *gpu, const pn_receiver_desc *d) {
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_SOURCE,
                     "one of depth_texture and use_framebuffer must be set");
   if (!pni_floats_finite(d->view, 16) || !pni_floats_finite(d->projection, 16))
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX,
-                    "view or projection is not finite");
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX, "view or projection is not finite");
   if (d->scale != 0 && d->scale != 1 && d->scale != 2 && d->scale != 4)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_SCALE, "scale %d is not 1, 2 or 4", d->scale);
   if ((int)d->format < PN_FORMAT_R16F || d->format > PN_FORMAT_R8)
@@ -97,8 +96,8 @@ static pn_result check_companion(pni_gpu *gpu, const pn_receiver_desc *d, pn_gl 
                   height);
 }
 
-/* Normals are colours. Half a step of a normalised integer on three axes; an octahedral map stretches it by at most another
- * factor. */
+/* Normals are colours. Half a step of a normalised integer on three axes; an octahedral map stretches it by at most
+ * another factor. */
 static pn_result check_normals(pni_gpu *gpu, const pn_receiver_desc *d, float *error) {
   int bits = 0;
   bool is_float = false;

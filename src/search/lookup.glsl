@@ -18,7 +18,8 @@ float pn_bilinear_blocks(int light, highp sampler2DArray maps, pn_ShadedPoint r,
   ivec2 base = ivec2(floor(at));
   vec2 f = at - vec2(base);
   vec2 low = vec2(pn_texel_blocks(light, maps, map, r, base), pn_texel_blocks(light, maps, map, r, base + ivec2(1, 0)));
-  vec2 high = vec2(pn_texel_blocks(light, maps, map, r, base + ivec2(0, 1)), pn_texel_blocks(light, maps, map, r, base + 1));
+  vec2 high = vec2(pn_texel_blocks(light, maps, map, r, base + ivec2(0, 1)),
+                   pn_texel_blocks(light, maps, map, r, base + 1));
   vec2 columns = mix(low, high, f.y);
   return mix(columns.x, columns.y, f.x);
 }

@@ -50,7 +50,8 @@ void pn_add_patch(int light, pn_ShadedPoint r, vec2 low, vec2 high, float w, ino
   pn_search_done.z += 1.0;
 }
 
-void pn_texel_patch(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 texel, inout pn_Cover c) {
+void pn_texel_patch(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 texel,
+                    inout pn_Cover c) {
   float w = pn_map_fetch(light, maps, map, layer, texel);
   if (w <= r.m.z + r.epsilon_w || !pn_texel_hides(light, r, map, texel, w)) return;
   vec2 low = pn_map_st(light, map, vec2(texel)) - r.m.xy, high = pn_map_st(light, map, vec2(texel) + 1.0) - r.m.xy;
@@ -84,16 +85,18 @@ vec2 pn_edge(float scale, float near, float far, vec2 share, vec2 inverse) {
 pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 first, ivec2 last) {
   int array_layer = pn_array_layer(light, map, layer);
   ivec2 size = pn_map_size(light, map), end = min(last, size - 1);
-  vec4 depth = vec4(texelFetch(maps, ivec3(first, array_layer), 0).r, texelFetch(maps, ivec3(end.x, first.y, array_layer), 0).r,
-                    texelFetch(maps, ivec3(first.x, end.y, array_layer), 0).r, texelFetch(maps, ivec3(end, array_layer), 0).r);
+  vec4 depth = vec4(texelFetch(maps, ivec3(first, array_layer), 0).r,
+                    texelFetch(maps, ivec3(end.x, first.y, array_layer), 0).r,
+                    texelFetch(maps, ivec3(first.x, end.y, array_layer), 0).r,
+                    texelFetch(maps, ivec3(end, array_layer), 0).r);
   vec2 w_of_depth = pn_lights[light].maps[map].w_of_depth;
   vec4 dw = w_of_depth.x + w_of_depth.y * depth - r.m.z;
   vec2 low = pn_map_st(light, map, vec2(first) + 0.5) - r.m.xy, high = pn_map_st(light, map, vec2(last) + 0.5) - r.m.xy;
   vec4 s = vec4(low.x, high.x, low.x, high.x), t = vec4(low.y, low.y, high.y, high.y);
   vec4 front = r.n.x * s + r.n.y * t - r.k * dw - r.epsilon_plane - r.sigma * (abs(s) + abs(t) + r.reach * abs(dw));
   bvec4 outside = bvec4(false, last.x >= size.x, last.y >= size.y, last.x >= size.x || last.y >= size.y);
-  vec4 there = vec4(greaterThan(dw, vec4(r.epsilon_w))) * vec4(lessThan(depth, vec4(1.0))) * vec4(greaterThan(depth, vec4(0.0))) *
-               (1.0 - vec4(outside));
+  vec4 there = vec4(greaterThan(dw, vec4(r.epsilon_w))) * vec4(lessThan(depth, vec4(1.0))) *
+               vec4(greaterThan(depth, vec4(0.0))) * (1.0 - vec4(outside));
   vec4 hide = there * vec4(greaterThan(front, vec4(0.0)));
   pn_Quad q;
   q.whole = hide == vec4(1.0);
@@ -120,7 +123,8 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map,
   return q;
 }
 
-void pn_texel_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 first, ivec2 last, inout pn_Cover c) {
+void pn_texel_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 first,
+                   ivec2 last, inout pn_Cover c) {
   pn_Quad q = pn_quad(light, maps, r, map, layer, first, last);
   if (!q.some) return;
   if (q.whole)
@@ -131,7 +135,8 @@ void pn_texel_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int m
 }
 #endif
 
-void pn_texel_primitive(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 texel, inout pn_Cover c) {
+void pn_texel_primitive(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 texel,
+                        inout pn_Cover c) {
 #if PN_PRIMITIVE == PN_PATCH
   pn_texel_patch(light, maps, r, map, layer, texel, c);
 #else
@@ -167,7 +172,8 @@ void pn_window_texels(int light, pn_ShadedPoint r, int map, float w, out ivec2 l
 // The range stack keeps its levels as array layers: level i holds largest and smallest w of the 2^i x 2^i texels
 // centred on each texel.
 vec2 pn_stack_at(int light, highp sampler2DArray stack, int map, int layer, int level, ivec2 texel) {
-  int levels = textureSize(stack, 0).z / (pn_array_layer(light, pn_map_count(light) - 1, 0) + pn_map_layers(light, map));
+  int images = pn_array_layer(light, pn_map_count(light) - 1, 0) + pn_map_layers(light, map);
+  int levels = textureSize(stack, 0).z / images;
   ivec2 at = clamp(texel, ivec2(0), pn_map_size(light, map) - 1);
   return texelFetch(stack, ivec3(at, pn_array_layer(light, map, layer) * levels + level), 0).rg;
 }
@@ -240,7 +246,8 @@ bool pn_is_umbra(int light, pn_ShadedPoint r, int map, pn_Window window) {
 
 // A texel of a coarser level past the cap, on the pyramid's fixed grid: nearest surface of its block, as one patch
 // (section 5).
-void pn_coarse_patch(int light, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, ivec2 block, int level, inout pn_Cover c) {
+void pn_coarse_patch(int light, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, ivec2 block,
+                     int level, inout pn_Cover c) {
 #if PN_REFINE == 2
   vec2 w = pn_stack_at(light, range, map, layer, level, (block << level) + ((1 << level) >> 1));
 #else
@@ -263,7 +270,8 @@ int pn_level_for(ivec2 size, int cap) {
   return level;
 }
 
-void pn_scan_one(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, ivec2 at, int level,
+void pn_scan_one(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map,
+                 int layer, ivec2 at, int level,
                  inout pn_Cover c) {
   pn_search_done.y += 1.0;
   if (level == 0)
@@ -273,8 +281,8 @@ void pn_scan_one(int light, highp sampler2DArray maps, highp sampler2DArray rang
 }
 #define PN_TURN(i) if (x + i <= last.x) pn_scan_one(light, maps, range, r, map, layer, ivec2(x + i, y), level, c);
 
-void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, pn_Window window,
-             int cap, inout pn_Cover c) {
+void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer,
+             pn_Window window, int cap, inout pn_Cover c) {
   int level = pn_level_for(window.high - window.low + 1, cap);
   ivec2 first = window.low >> level, last = window.high >> level;
   for (int y = first.y; y <= last.y; y++)
@@ -296,11 +304,13 @@ struct pn_Rectangle { vec2 low, high; }; // on the light, 0 to 1
 // One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Wherever in its range the
 // surface lies, it hides no more than the hull of the block's projections at both ends of the range, and, where it has
 // no hole, no less than what both have in common.
-int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer,
-                   ivec2 node, int level, float merge, inout pn_Cover c, out pn_Quad quad) {
-  vec3 dw = texelFetch(range, ivec3(node, pn_array_layer(light, map, layer)), level).rgb - r.m.z; // largest, smallest, that of what is there
+int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map,
+                   int layer, ivec2 node, int level, float merge, inout pn_Cover c, out pn_Quad quad) {
+  // largest, smallest, that of what is there
+  vec3 dw = texelFetch(range, ivec3(node, pn_array_layer(light, map, layer)), level).rgb - r.m.z;
   vec2 extent = pn_extent(light);
-  vec2 low = pn_block_st(light, map, node << level) - r.m.xy, high = pn_block_st(light, map, (node + 1) << level) - r.m.xy;
+  vec2 low = pn_block_st(light, map, node << level) - r.m.xy;
+  vec2 high = pn_block_st(light, map, (node + 1) << level) - r.m.xy;
   bool beside = any(greaterThan(low, extent * dw.x)) || any(lessThan(high, -extent * dw.x));
 #if PN_PRIMITIVE == PN_PATCH
   // A single texel is asked at its centre, as the sample it is.
@@ -402,7 +412,8 @@ void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range
 
 // ---- one layer of one map ------------------------------------------------------------------------------------------
 
-void pn_search(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, inout pn_Cover c) {
+void pn_search(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer,
+               inout pn_Cover c) {
   pn_Window window = pn_find_window(light, range, r, map, layer);
   pn_search_done.x = max(pn_search_done.x, 1.0);
   // lit, as far as this layer goes

@@ -5,7 +5,8 @@
 #include "casters/casters.h"
 #include "gl/texture.h"
 
-/* Tables are textures, PNI_EDGE_ROW entries a row; positions a row of floats. The shaders are told by pni_edge_defines. */
+/* Tables are textures, PNI_EDGE_ROW entries a row; positions a row of floats. The shaders are told by
+ * pni_edge_defines. */
 enum { PNI_EDGE_ROW = 4096, PNI_POSITION_ROW = 4096 };
 extern const char pni_edge_defines[];
 

@@ -11,8 +11,8 @@ typedef struct {
 
 pni_region pni_region_empty(void);
 void pni_region_add(pni_region *region, const double m[3]);
-/* Adds what a camera's frustum covers. scene_from_clip: inverse of projection * view; depth_near: 0 or -1, the near end of its clip
- * space. */
+/* Adds what a camera's frustum covers. scene_from_clip: inverse of projection * view; depth_near: 0 or -1, the near
+ * end of its clip space. */
 void pni_region_add_frustum(pni_region *region, const pni_frame *frame, const pni_matrix *scene_from_clip,
                             double depth_near);
 

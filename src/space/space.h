@@ -12,8 +12,8 @@
 #include <penumbra/penumbra.h>
 #include "space/matrix.h"
 
-/* How the space is projected: towards a light's centre, or along a sun's rays. What the light looks like from there, its
- * outline and emission, is another matter: pni_emission. */
+/* How the space is projected: towards a light's centre, or along a sun's rays. What the light looks like from there,
+ * its outline and emission, is another matter: pni_emission. */
 typedef enum { PNI_CENTRAL = 0, PNI_PARALLEL } pni_projection;
 
 typedef struct {
@@ -26,7 +26,8 @@ typedef struct {
   double extent[2]; /* A_u, A_v: scene units, or tangents */
 } pni_emission;
 
-/* The w of what is not there, behind every receiver, and its opposite. Anything beyond a tenth of them is one of them. */
+/* The w of what is not there, behind every receiver, and its opposite. Anything beyond a tenth of them is one of
+ * them. */
 #define PNI_NOTHING -1e30f
 #define PNI_EVERYTHING 1e30f
 static inline bool pni_is_nothing(double w) { return w <= -1e29; }

@@ -23,7 +23,8 @@ static void preset(int choice, double *values) {
   values[SAMPLES] = samples[choice];
 }
 
-/* It draws its maps itself, batch by batch; pn_maps_update only finds out whether anything casts, and has the host draw. */
+/* It draws its maps itself, batch by batch; pn_maps_update only finds out whether anything casts, and has the host
+ * draw. */
 static void want(const double *values, pni_maps_want *out) {
   (void)values;
   *out = (pni_maps_want){0};
@@ -46,8 +47,8 @@ static void light_point(const pni_emission *emission, int i, int count, double o
 
 /* ---- what it keeps ----------------------------------------------------------------------------------------------- */
 
-/* Maps are drawn when they are read, one batch after the other into the same images. Where the host's callbacks draw casters,
- * which is for pn_maps_update alone, all batches are drawn then and kept. */
+/* Maps are drawn when they are read, one batch after the other into the same images. Where the host's callbacks draw
+ * casters, which is for pn_maps_update alone, all batches are drawn then and kept. */
 typedef struct {
   pni_maps *batches;
   int count;

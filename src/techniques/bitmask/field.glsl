@@ -87,16 +87,17 @@ uint pn_lines_of_row(int row) {
 
 const uint pn_even_columns = 0x55555555u;
 
-// The samples inside a rectangle. The displaced samples' coordinates, all of them together, are those of a regular grid
-// of 32: along y sample (i, j) is at 2 j + i % 2, which is its line; along x at 2 i + (j + 1) % 2. So there too each axis
-// is one range.
+// The samples inside a rectangle. The displaced samples' coordinates, all of them together, are those of a regular
+// grid of 32: along y sample (i, j) is at 2 j + i % 2, which is its line; along x at 2 i + (j + 1) % 2. So there too
+// each axis is one range.
 pn_Field pn_rectangle(vec2 low, vec2 high) {
   pn_Field f;
 #if PN_SAMPLES == 17
   ivec4 ends = ivec4(clamp(ceil(vec4(low, high) * 32.0 - 0.5), 0.0, 32.0));
   uint found = pn_bit_range(ends.x, ends.z), lines = pn_bit_range(ends.y, ends.w);
   // from 4 (i / 2) + 2 (i % 2) + (j + 1) % 2 to the places in a word
-  uint columns = found >> 1 & 0x11111111u | found >> 2 & 0x22222222u | found << 2 & 0x44444444u | found << 1 & 0x88888888u;
+  uint columns = found >> 1 & 0x11111111u | found >> 2 & 0x22222222u | found << 2 & 0x44444444u |
+                 found << 1 & 0x88888888u;
 #else
   ivec4 ends = ivec4(clamp(ceil(vec4(low, high) * float(PN_GRID) - 0.5), 0.0, float(PN_GRID)));
   uint columns = pn_bit_range(ends.x * PN_LINES, ends.z * PN_LINES), lines = pn_bit_range(ends.y, ends.w);

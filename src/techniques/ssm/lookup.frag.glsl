@@ -35,8 +35,9 @@ vec4 pn_layers_at(ivec2 texel, vec3 m, float thickness, float share) {
   return sums;
 }
 
-// Bilinear over the four texels around the receiver. Where they hold its surface in no layer, since others lie before it
-// in all of them, those somewhat farther around are asked; then whatever there is, and the hard shadow where it is darker.
+// Bilinear over the four texels around the receiver. Where they hold its surface in no layer, since others lie before
+// it in all of them, those somewhat farther around are asked; then whatever there is, and the hard shadow where it is
+// darker.
 float pn_hidden(pn_ShadedPoint r, bool sun) {
   vec2 at = pn_seen_texel(r.m.xy) - 0.5;
   ivec2 base = ivec2(floor(at)), last = textureSize(pn_seen, 0).xy - 1;

@@ -12,7 +12,8 @@ layout(location = 0) out uvec4 pn_out;
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   // Nothing is here, and the target says so already; leaving costs less than any condition.
-  if (pn_farthest_seen() > 0.1 * PN_EVERYTHING || pn_is_nothing(texelFetch(pn_range, ivec3(at, pn_source.x), pn_source.y).r)) discard;
+  float nearest = texelFetch(pn_range, ivec3(at, pn_source.x), pn_source.y).r;
+  if (pn_is_nothing(-pn_farthest_seen()) || pn_is_nothing(nearest)) discard;
   pn_Patch p = pn_node(at, pn_source.y);
   pn_node_reach(p);
   uint own = p.drawn ? 1u : 0u, count = own;

@@ -1,6 +1,6 @@
-/* What the camera sees, as the light sees it: the host's depth, scattered into light map space. Scattering computes shadows
- * where surfaces receive them, so it needs them there; the camera's depth is all the library is given, and all it needs: a
- * shadow that no pixel shows does not have to be computed. docs/space.md. */
+/* What the camera sees, as the light sees it: the host's depth, scattered into light map space. Scattering computes
+ * shadows where surfaces receive them, so it needs them there; the camera's depth is all the library is given, and
+ * all it needs: a shadow that no pixel shows does not have to be computed. docs/space.md. */
 #ifndef PNI_TECHNIQUES_SSM_SEEN_H
 #define PNI_TECHNIQUES_SSM_SEEN_H
 
@@ -14,8 +14,8 @@ typedef struct {
 } pni_seen_want;
 
 typedef struct {
-  /* RGBA32F array, a layer for each surface, nearest to the light first. A texel: w of the surface at its centre, and its
-   * tangent plane (seen.glsl); w is PN_NOTHING where no pixel shows one. */
+  /* RGBA32F array, a layer for each surface, nearest to the light first. A texel: w of the surface at its centre, and
+   * its tangent plane (seen.glsl); w is PN_NOTHING where no pixel shows one. */
   pni_texture layers;
   pni_texture range; /* pyramid over layers: largest and smallest w of 2^i x 2^i texels, padded to powers of two */
   pni_texture aside, depth; /* while a layer is drawn */

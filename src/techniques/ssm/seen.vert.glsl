@@ -1,6 +1,6 @@
-// One layer of the map of seen surfaces: each pixel of the camera's view as a point in light map space. Of those that fall
-// into a texel the depth test keeps the one nearest to the light; those that lie on the layer before are left out.
-// All of it happens here, once a pixel, and nothing for each fragment.
+// One layer of the map of seen surfaces: each pixel of the camera's view as a point in light map space. Of those that
+// fall into a texel the depth test keeps the one nearest to the light; those that lie on the layer before are left
+// out. All of it happens here, once a pixel, and nothing for each fragment.
 #include "shaders/precision.glsl"
 #include "maps/maps.glsl"
 #include "receiver/surface.glsl"
