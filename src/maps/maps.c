@@ -64,7 +64,7 @@ static void place_map(pni_gpu *gpu, pni_light_block *b, const pni_map_draw *draw
     /* bounds and positions in float, far from the origin of the map */
     double steps = map->size[i] * fmax(fabs(low), fabs(high)) / (high - low);
     b->raster_error = fmaxf(b->raster_error, raster_error(gpu) + (float)(steps * 0x1p-22));
-    if (b->map_count == 0) b->texel[i] = 1.0f / map->density[i];
+    b->texel[i] = fmaxf(b->texel[i], 1.0f / map->density[i]);
   }
 }
 
