@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gl/bound.h"
 #include "gl/device.h"
 #include "gl/host.h"
 #include "gl/label.h"
@@ -118,7 +119,9 @@ void pni_enter(pn_context *context) {
 
 pn_result pni_leave(pn_context *context, pn_result result) {
   pni_group(&context->gpu, NULL);
-  if (context->gpu.desc.state == PN_STATE_RESTORE) pni_state_restore(&context->gpu, &context->saved);
+  /* After a callback of the host's nothing of what was read need be so. */
+  bool strange = context->gpu.host == NULL;
+  if (context->gpu.desc.state == PN_STATE_RESTORE) pni_state_restore(&context->gpu, &context->saved, strange);
   if (context->gpu.desc.state == PN_STATE_RESET) pni_state_reset(&context->gpu);
   pni_forget(&context->gpu);
   return result;
@@ -132,7 +135,7 @@ static pn_result scope(pn_context *context, bool begin) {
                     begin ? "pn_state_begin was called twice" : "pn_state_end without pn_state_begin");
   context->scope = begin;
   if (begin) pni_state_save(&context->gpu, &context->saved);
-  else pni_state_restore(&context->gpu, &context->saved);
+  else pni_state_restore(&context->gpu, &context->saved, true);
   return PN_OK;
 }
 

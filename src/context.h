@@ -25,7 +25,7 @@ struct pn_context {
   pni_object *objects;
   uint64_t serial;    /* the last one given */
   bool scope;         /* between pn_state_begin and pn_state_end */
-  pni_gl_state saved; /* the host's state, while the library is at work */
+  pni_host_state saved; /* the host's state, while the library is at work */
   pni_forward_text *forward_texts;
   pni_buffer forward_block;
 };

@@ -319,7 +319,12 @@ typedef struct {
   int scale;          /* 1, 2 or 4: visibility is computed at 1/scale and brought up along depth and plane; 0 = 1 */
   pn_format format;   /* of the results */
 } pn_receiver_desc;
-#define PN_RECEIVER_DEFAULTS {0} /* as a zeroed one */
+/* As a zeroed one. */
+#ifdef __cplusplus
+#define PN_RECEIVER_DEFAULTS {}
+#else
+#define PN_RECEIVER_DEFAULTS {0}
+#endif
 
 PN_API pn_result pn_receiver_create(pn_context *context, pn_receiver **out);
 PN_API void pn_receiver_destroy(pn_receiver **receiver); /* and its results; clears the handle */

@@ -29,7 +29,7 @@ const GLenum pni_pack_names[PNI_PIXEL_NAMES] = {GL_PACK_ALIGNMENT, GL_PACK_ROW_L
                                                 GL_PACK_SKIP_PIXELS, GL_PACK_SWAP_BYTES};
 const GLenum pni_unpack_names[PNI_PIXEL_NAMES] = {GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS,
                                                   GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SWAP_BYTES};
-static const GLint pixel_defaults[PNI_PIXEL_NAMES] = {4, 0, 0, 0, 0};
+const GLint pni_pixel_defaults[PNI_PIXEL_NAMES] = {4, 0, 0, 0, 0};
 
 /* ---- plain settings ---------------------------------------------------------------------------------------------- */
 
@@ -73,13 +73,49 @@ void pni_blend_functions(pni_gpu *gpu, const GLint equation[2], const GLint func
 
 /* ---- neutral ----------------------------------------------------------------------------------------------------- */
 
-static void neutral_pixels(pni_gpu *gpu) {
-  GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
-  GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, 0);
+static void neutral_pixels(pni_gpu *gpu, const pni_host_state *host) {
+  if (!host || host->pixel_pack) GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
+  if (!host || host->pixel_unpack) GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, 0);
   for (int i = 0; i < PNI_PIXEL_NAMES; i++) {
-    GL(gpu, PixelStorei)(pni_pack_names[i], pixel_defaults[i]);
-    GL(gpu, PixelStorei)(pni_unpack_names[i], pixel_defaults[i]);
+    if (!host || host->pack[i] != pni_pixel_defaults[i]) GL(gpu, PixelStorei)(pni_pack_names[i], pni_pixel_defaults[i]);
+    if (!host || host->unpack[i] != pni_pixel_defaults[i])
+      GL(gpu, PixelStorei)(pni_unpack_names[i], pni_pixel_defaults[i]);
   }
+}
+
+static void neutral_switches(pni_gpu *gpu, const pni_host_state *host) {
+  bool blends = !host;
+  for (int i = 0; i < pni_switch_count(gpu); i++)
+    if (!host || host->enabled[i]) pni_switch(gpu, pni_switches[i], false);
+  for (int i = 0; i < gpu->can.clip_distances; i++)
+    if (!host || host->clip[i]) GL(gpu, Disable)(GL_CLIP_DISTANCE0 + (GLenum)i);
+  for (int i = 0; i < gpu->can.draw_buffers && host; i++) blends = blends || host->blend[i];
+  if (blends) GL(gpu, Disable)(GL_BLEND);
+}
+
+static bool all_channels(const pni_gpu *gpu, const pni_host_state *host) {
+  bool all = true;
+  for (int i = 0; i < gpu->can.draw_buffers; i++)
+    for (int c = 0; c < 4; c++) all = all && host->color_mask[i][c];
+  return all;
+}
+
+static void neutral_raster(pni_gpu *gpu, const pni_host_state *h) {
+  if (!h || !all_channels(gpu, h)) GL(gpu, ColorMask)(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  if (!h || h->depth_mask) GL(gpu, DepthMask)(GL_FALSE);
+  if (!h || h->depth_func != GL_LESS) GL(gpu, DepthFunc)(GL_LESS);
+  if (!h || h->depth_range[0] != 0 || h->depth_range[1] != 1) pni_depth_range(gpu, 0, 1);
+  if (!h || h->provoking_vertex != GL_LAST_VERTEX_CONVENTION) GL(gpu, ProvokingVertex)(GL_LAST_VERTEX_CONVENTION);
+  if (!h || h->clamp_read != GL_FIXED_ONLY) GL(gpu, ClampColor)(GL_CLAMP_READ_COLOR, GL_FIXED_ONLY);
+  if (!h || !pni_fills_polygons(gpu, h)) GL(gpu, PolygonMode)(GL_FRONT_AND_BACK, GL_FILL);
+  if (!h || h->front_face != GL_CCW) GL(gpu, FrontFace)(GL_CCW);
+  if (!h || h->cull_face != GL_BACK) GL(gpu, CullFace)(GL_BACK);
+  if (gpu->can.clip_control && (!h || h->clip_origin != GL_LOWER_LEFT || h->clip_depth != GL_NEGATIVE_ONE_TO_ONE))
+    GL(gpu, ClipControl)(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+}
+
+bool pni_fills_polygons(const pni_gpu *gpu, const pni_host_state *host) {
+  return host->polygon_mode[0] == GL_FILL && (!gpu->can.compatibility || host->polygon_mode[1] == GL_FILL);
 }
 
 /* GL cannot name what was never bound. */
@@ -110,23 +146,15 @@ static void remember_neutral(pni_bound *b) {
   b->depth_range[1] = 1;
   b->blend = PNI_BLEND_NONE;
   b->channels[0] = b->channels[1] = 15;
+  b->touched = 0;
+  b->blended = false;
 }
 
 void pni_neutral(pni_gpu *gpu) {
-  for (int i = 0; i < pni_switch_count(gpu); i++) pni_switch(gpu, pni_switches[i], false);
-  for (int i = 0; i < gpu->can.clip_distances; i++) GL(gpu, Disable)(GL_CLIP_DISTANCE0 + (GLenum)i);
-  GL(gpu, Disable)(GL_BLEND);
-  GL(gpu, ColorMask)(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  GL(gpu, DepthMask)(GL_FALSE);
-  GL(gpu, DepthFunc)(GL_LESS);
-  pni_depth_range(gpu, 0, 1);
-  GL(gpu, ProvokingVertex)(GL_LAST_VERTEX_CONVENTION);
-  GL(gpu, ClampColor)(GL_CLAMP_READ_COLOR, GL_FIXED_ONLY);
-  GL(gpu, PolygonMode)(GL_FRONT_AND_BACK, GL_FILL);
-  GL(gpu, FrontFace)(GL_CCW);
-  GL(gpu, CullFace)(GL_BACK);
-  if (gpu->can.clip_control) GL(gpu, ClipControl)(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
-  neutral_pixels(gpu);
+  const pni_host_state *host = gpu->host;
+  neutral_switches(gpu, host);
+  neutral_raster(gpu, host);
+  neutral_pixels(gpu, host);
   remember_neutral(&gpu->bound);
   label_shared(gpu);
 }
@@ -134,6 +162,7 @@ void pni_neutral(pni_gpu *gpu) {
 void pni_forget(pni_gpu *gpu) {
   gpu->bound.known = false;
   gpu->program = NULL;
+  gpu->host = NULL;
 }
 
 void pni_ready(pni_gpu *gpu) {
@@ -174,6 +203,7 @@ static void activate(pni_gpu *gpu, int unit) {
 
 void pni_bind_texture(pni_gpu *gpu, int unit, GLenum target, pn_gl texture, pn_gl sampler) {
   pni_bound *b = &gpu->bound;
+  b->touched |= 1u << unit;
   if (b->texture[unit] != texture || b->target[unit] != target) {
     activate(gpu, unit);
     GL(gpu, BindTexture)(target, texture);
@@ -267,6 +297,7 @@ void pni_set_blend(pni_gpu *gpu, pni_blend blend) {
     GL(gpu, Disablei)(GL_BLEND, 0);
     return;
   }
+  gpu->bound.blended = true;
   GLint equation = blend == PNI_BLEND_MIN ? GL_MIN : GL_FUNC_ADD;
   pni_blend_functions(gpu, (GLint[2]){equation, equation}, (GLint[4]){GL_ONE, GL_ONE, GL_ONE, GL_ONE});
   GL(gpu, Enablei)(GL_BLEND, 0);

@@ -13,7 +13,7 @@ void pni_forget(pni_gpu *gpu);
 /* Before anything that depends on state: switches off everything that could change what a pass of the library draws,
  * where that is not known to be off. */
 void pni_ready(pni_gpu *gpu);
-/* The same, whatever is known. */
+/* The same, whatever is known of what passes set; what the host is known to have left so is not set again. */
 void pni_neutral(pni_gpu *gpu);
 
 void pni_bind_program(pni_gpu *gpu, pn_gl program);
@@ -44,7 +44,6 @@ void pni_set_point_size(pni_gpu *gpu, bool on);
 /* ---- without remembering: for what saves and restores the host's state ---- */
 
 /* Capabilities without an index that are switched off; GL_DITHER is the only one that is on by GL's default. */
-enum { PNI_SWITCHES = 17 };
 extern const GLenum pni_switches[PNI_SWITCHES];
 int pni_switch_count(const pni_gpu *gpu);
 void pni_switch(pni_gpu *gpu, GLenum name, bool on);
@@ -54,5 +53,7 @@ void pni_scissor(pni_gpu *gpu, const int box[4]);
 void pni_blend_functions(pni_gpu *gpu, const GLint equation[2], const GLint function[4]);
 enum { PNI_PIXEL_NAMES = 5 };
 extern const GLenum pni_pack_names[PNI_PIXEL_NAMES], pni_unpack_names[PNI_PIXEL_NAMES];
+extern const GLint pni_pixel_defaults[PNI_PIXEL_NAMES];
+bool pni_fills_polygons(const pni_gpu *gpu, const pni_host_state *host);
 
 #endif

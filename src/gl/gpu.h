@@ -5,15 +5,7 @@
 #include <stdbool.h>
 #include <penumbra/penumbra.h>
 #include "gl/functions.h"
-
-/* Texture units the library uses, from 0: state saving covers exactly these. A program's samplers take them in the
- * order in which the compiler lists them. */
-enum {
-  PNI_UNITS = 12,
-  PNI_UNIT_SCRATCH = PNI_UNITS - 1, /* for looking at textures and filling them: no sampler's */
-  PNI_UNIT_PEEL = 6                 /* what a host's draw callback finds the previous layer on */
-};
-enum { PNI_DRAW_BUFFERS_SAVED = 8, PNI_CLIP_DISTANCES_SAVED = 8 };
+#include "gl/host_state.h"
 
 typedef struct {
   int version; /* 33, 45, 46 */
@@ -57,7 +49,9 @@ typedef struct {
   GLenum depth_func;
   double depth_range[2];
   pni_blend blend;
-  bool group; /* a debug group of the library's is open */
+  bool group;       /* a debug group of the library's is open */
+  uint32_t touched; /* units that something was bound to */
+  bool blended;     /* blend functions were set */
 } pni_bound;
 
 typedef struct pni_gpu {
@@ -82,6 +76,7 @@ typedef struct pni_gpu {
   pni_program *programs;
 
   pni_bound bound;
+  const pni_host_state *host; /* what the host left, at entry; NULL: not read, or no longer so */
   const pni_program *program; /* of the pass that has begun */
   uint32_t textures_set;      /* its samplers that were given a texture */
 } pni_gpu;

@@ -1,30 +1,13 @@
 /* The host's GL state: saved, restored, or put at GL's defaults. */
-#ifndef PN_GL_STATE_H
-#define PN_GL_STATE_H
+#ifndef PNI_GL_STATE_H
+#define PNI_GL_STATE_H
 
-#include "gl/bound.h"
+#include "gl/gpu.h"
 
-typedef struct {
-  GLint program, vertex_array, array_buffer, draw_framebuffer, read_framebuffer, uniform_buffer, pixel_pack,
-      pixel_unpack, draw_indirect;
-  GLint block_buffer; /* the indexed uniform buffer binding the library uses */
-  GLint64 block_start, block_size;
-  GLint active_texture, texture_2d[PNI_UNITS], texture_array[PNI_UNITS], texture_multisample[PNI_UNITS],
-      sampler[PNI_UNITS];
-  GLint viewport[4], scissor[4], clamp_read;
-  GLboolean color_mask[PNI_DRAW_BUFFERS_SAVED][4], depth_mask, blend[PNI_DRAW_BUFFERS_SAVED];
-  GLint blend_equation[2], blend_function[4]; /* of draw buffer 0: colour, alpha; source and destination of each */
-  GLint depth_func, cull_face, front_face, polygon_mode[2], provoking_vertex;
-  GLdouble depth_range[2], clear_depth;
-  GLint clip_origin, clip_depth;
-  GLint pack[5]; /* alignment, row length, skip rows, skip pixels, swap bytes */
-  GLint unpack[5];
-  GLboolean clip[PNI_CLIP_DISTANCES_SAVED];
-  GLboolean enabled[PNI_SWITCHES];
-} pni_gl_state;
-
-void pni_state_save(pni_gpu *gpu, pni_gl_state *state);
-void pni_state_restore(pni_gpu *gpu, const pni_gl_state *state);
+/* Reads it; until the host's code runs again, passes count on what was read. */
+void pni_state_save(pni_gpu *gpu, pni_host_state *state);
+/* Sets what is no longer so; whole: all of it, whatever is known. */
+void pni_state_restore(pni_gpu *gpu, const pni_host_state *state, bool whole);
 /* GL's defaults for everything the library touches, except the viewport, which has none. */
 void pni_state_reset(pni_gpu *gpu);
 

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gl/bound.h"
 #include "gl/state.h"
 #include "maps/maps.h"
 #include "maps/range.h"

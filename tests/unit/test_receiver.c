@@ -7,6 +7,7 @@
 #include "gl/host.h"
 #include "gl/program.h"
 #include "gl/source.h"
+#include "gl/bound.h"
 #include "gl/state.h"
 #include "receiver/receiver.h"
 #include "stage.h"
