@@ -14,11 +14,22 @@
  *     translation. Distances are in scene units, angles in radians.
  *   - Every function that takes an object must be called with the context's GL context current, on that thread.
  *     Different contexts may be used on different threads at the same time. Functions without an object may be called
- *     anywhere.
- *   - Description structs may be zeroed: zero means the default wherever zero itself makes no sense.
+ *     anywhere. Objects that are handed to one call belong to one context.
+ *   - Description structs may be zeroed: zero means the default wherever zero itself makes no sense. They are copied.
+ *   - Objects live until their pn_..._destroy or their context's. GL objects of the host's are referenced, never freed:
+ *     keep them alive as long as a description holds them.
  *   - Functions return PN_OK or a negative pn_result; the reason, with a stable message id, goes to the context's log.
- *     A call that fails leaves the object as it was. Nothing aborts, nothing is printed, no GL error is raised.
+ *     A call that fails leaves the object as it was, unless it says what becomes of it. Nothing aborts, nothing is
+ *     printed, no GL error is raised.
  *   - The same input on the same device gives the same bits.
+ *
+ * Errors are listed as results, with the messages that tell them apart: "Errors: ARGUMENT (MESH_BOUNDS),
+ * OUT_OF_MEMORY." stands for PN_ERROR_ARGUMENT with PN_MESSAGE_MESH_BOUNDS, and PN_ERROR_OUT_OF_MEMORY. What is the
+ * same everywhere:
+ *   - The object that a function is called with is NULL: ARGUMENT, without a message, since nobody could be told. It is
+ *     not listed. NULL_ARGUMENT stands for every other pointer that must not be NULL.
+ *   - OUT_OF_MEMORY comes with OUT_OF_MEMORY (the host's memory) or GPU_MEMORY; SHADER with SHADER_COMPILE, SHADER_LINK
+ *     or SHADER_MISSING; CONTEXT_LOST with GL_LOST; UNSUPPORTED of what draws with FRAMEBUFFER.
  *
  * This header is C99 and C++, and includes no GL header. docs/ explains the space, the techniques and the costs. */
 #ifndef PENUMBRA_H
@@ -67,7 +78,7 @@ typedef enum {
   PN_ERROR_NOT_READY = -6      /* something that must come first is missing: see the message */
 } pn_result;
 
-/* A few words for a result, for example "argument"; never NULL. */
+/* A few words for a result, for example "argument"; never NULL. Static. */
 PN_API const char *pn_result_name(pn_result result);
 
 typedef enum { PN_LOG_ERROR = 0, PN_LOG_WARNING, PN_LOG_INFO } pn_log_level;
@@ -75,13 +86,13 @@ typedef enum { PN_LOG_ERROR = 0, PN_LOG_WARNING, PN_LOG_INFO } pn_log_level;
 /* Every message the library can send. Ids are stable: new ones are appended. */
 typedef enum {
   PN_MESSAGE_NONE = 0,
-  PN_MESSAGE_NULL_ARGUMENT,           /* a required pointer is NULL */
+  PN_MESSAGE_NULL_ARGUMENT,           /* a required pointer is NULL, or a receiver is of another context */
   PN_MESSAGE_GL_VERSION,              /* the context is older than OpenGL 3.3 core */
   PN_MESSAGE_GL_FUNCTION,             /* the loader has no such function */
   PN_MESSAGE_GL_LOST,                 /* the GL context was lost or reset */
   PN_MESSAGE_OUT_OF_MEMORY,           /* the allocator returned NULL */
   PN_MESSAGE_GPU_MEMORY,              /* GL_OUT_OF_MEMORY, or gpu_memory_limit reached */
-  PN_MESSAGE_FRAMEBUFFER,             /* a framebuffer the library made is incomplete on this device */
+  PN_MESSAGE_FRAMEBUFFER,             /* this device has no texture of that size, or cannot draw into it */
   PN_MESSAGE_SHADER_COMPILE,          /* with the driver's log */
   PN_MESSAGE_SHADER_LINK,             /* with the driver's log */
   PN_MESSAGE_SHADER_MISSING,          /* a file is missing, or an #include does not resolve */
@@ -118,14 +129,16 @@ typedef enum {
   PN_MESSAGE_LIGHT_MAP,               /* map size outside 1..8192 or beyond the device's limit */
   PN_MESSAGE_LIGHT_ANGLE,             /* warning: the map would open past 170 degrees and is clamped there */
   PN_MESSAGE_LIGHT_UNSET,             /* pn_light_set has not succeeded yet */
-  PN_MESSAGE_MAPS_STALE,              /* pn_maps_update has not succeeded since the light or its technique changed */
+  /* pn_maps_update has not succeeded since the light or its technique changed, its casters are gone, or the pair was
+   * not drawn yet */
+  PN_MESSAGE_MAPS_STALE,
   PN_MESSAGE_TECHNIQUE_UNKNOWN,       /* no technique of that name */
   PN_MESSAGE_PARAMETER_UNKNOWN,       /* the technique has no such parameter */
   PN_MESSAGE_PARAMETER_VALUE,         /* not a value of the parameter's type, or out of its range */
-  PN_MESSAGE_RESULT_TARGET,           /* the host's texture has the wrong size, format or layer */
-  PN_MESSAGE_FORWARD,                 /* the technique has no forward form, or slots are out of range */
+  PN_MESSAGE_RESULT_TARGET,           /* the host's texture has the wrong size, format, layer or channels */
+  PN_MESSAGE_FORWARD,                 /* no forward form, or slots, lights, program or version do not fit */
   PN_MESSAGE_FALLBACK,                /* information: a slower way is taken because the device lacks a feature */
-  PN_MESSAGE_ACCUMULATION,            /* warning: 16-bit sums of many small occluders lose some of them (technique ssm) */
+  PN_MESSAGE_ACCUMULATION,            /* warning: 16-bit sums of many small occluders lose some of them (`ssm`) */
   PN_MESSAGE_STATE_MODE,              /* pn_context_desc.state is none of pn_state_mode */
   /* information, once a mesh: edges that are open, shared by three and more faces, between faces wound against each
    * other */
@@ -134,10 +147,11 @@ typedef enum {
   PN_MESSAGE_COUNT
 } pn_message;
 
-/* The stable name of a message id, for example "MESH_BOUNDS"; NULL when unknown. */
+/* The stable name of a message id, for example "MESH_BOUNDS"; NULL when unknown. Static. */
 PN_API const char *pn_message_name(int message_id);
 
-/* Called on the calling thread, during the call that caused it. text is one line, valid during the callback. */
+/* Called on the calling thread, during the call that caused it. text is one line, valid during the callback, which must
+ * not call the library. */
 typedef void (*pn_log_fn)(void *user, pn_log_level level, int message_id, const char *text);
 
 /* ---- context ----------------------------------------------------------------------------------------------------- */
@@ -158,31 +172,36 @@ typedef struct {
   pn_log_fn log; /* NULL: silent */
   void *user;    /* handed to the three callbacks */
   pn_state_mode state;
-  size_t gpu_memory_limit;      /* bytes, for everything the library allocates in GL; 0 = none */
-  /* sources read from here instead of the embedded ones, for live editing; NULL = embedded */
+  size_t gpu_memory_limit; /* bytes, for everything the library allocates in GL; 0 = none */
+  /* GLSL is read from here instead of the embedded text, in the layout of src/, for live editing; what is missing there
+   * is taken from the embedded text. NULL = embedded */
   const char *shader_directory;
 } pn_context_desc;
 
 /* Makes a context for the current GL context, OpenGL 3.3 core or newer (compatibility contexts work too). desc may be
- * NULL: all defaults. The description is copied, its strings too. No shader is compiled yet: see pn_prepare. */
+ * NULL: all defaults. The description is copied, its strings too. No shader is compiled yet: see pn_prepare. *out is
+ * NULL after a failure.
+ * Errors: ARGUMENT (NULL_ARGUMENT, STATE_MODE, SHADER_DIRECTORY), UNSUPPORTED (GL_VERSION, GL_FUNCTION),
+ * OUT_OF_MEMORY, CONTEXT_LOST: no GL context is current. */
 PN_API pn_result pn_context_create(const pn_context_desc *desc, pn_context **out);
 
 /* Frees the context and every object made from it that still lives (their handles become invalid), GL objects included.
  * Clears the handle. NULL and a NULL handle are fine. */
 PN_API void pn_context_destroy(pn_context **context);
 
-/* The same without a single GL call: for a GL context that is lost or already destroyed. */
+/* The same without a single GL call: for a GL context that is lost or already destroyed. None needs to be current. */
 PN_API void pn_context_abandon(pn_context **context);
 
-/* PN_STATE_SCOPED only: bracket any number of calls. Not nestable. In other modes they do nothing. */
+/* PN_STATE_SCOPED only: bracket any number of calls. Not nestable. In other modes they do nothing.
+ * Errors: ARGUMENT (STATE_SCOPE). */
 PN_API pn_result pn_state_begin(pn_context *context);
 PN_API pn_result pn_state_end(pn_context *context);
 
-/* With shader_directory: throws compiled programs away, so that the next call compiles from the files as they are
- * now. */
+/* Throws compiled programs away, so that the next call compiles again: with shader_directory, from the files as they
+ * are now. Errors: none. */
 PN_API pn_result pn_reload_shaders(pn_context *context);
 
-/* What the device can do and what the library makes of it. */
+/* What the device can do and what the library makes of it. Errors: ARGUMENT, without a message: out is NULL. */
 typedef struct {
   const char *vendor, *renderer, *version; /* GL's strings, valid as long as the context */
   int gl_version;                          /* 33 for OpenGL 3.3 */
@@ -191,7 +210,7 @@ typedef struct {
   int map_size_max;                        /* largest map width and height here */
   int map_layers_max;                      /* layers of depth a light can have: peeled layers times tiles */
   size_t gpu_memory;                       /* bytes the library holds in GL now */
-  size_t gl_calls; /* GL calls so far, in builds with assertions; else 0 */
+  size_t gl_calls;                         /* GL calls so far, in builds with assertions; else 0 */
 } pn_info;
 PN_API pn_result pn_context_info(const pn_context *context, pn_info *out);
 
@@ -232,34 +251,49 @@ typedef struct {
 typedef struct { uint32_t id; } pn_mesh;     /* id 0 is never valid */
 typedef struct { uint32_t id; } pn_instance; /* id 0 is never valid */
 
+/* Errors: ARGUMENT (NULL_ARGUMENT), OUT_OF_MEMORY. */
 PN_API pn_result pn_casters_create(pn_context *context, pn_casters **out);
-PN_API void pn_casters_destroy(pn_casters **casters); /* clears the handle */
+
+/* Clears the handle. NULL and a NULL handle are fine. Maps that were drawn of them stay. */
+PN_API void pn_casters_destroy(pn_casters **casters);
 
 /* Adds a mesh. It casts nothing until an instance places it. Triangles in memory with a coordinate that is not
- * finite, or without area, are dropped and counted in one warning. */
+ * finite, or without area, are dropped and counted in one warning (MESH_DROPPED). out->id is 0 after a failure.
+ * Errors: ARGUMENT (NULL_ARGUMENT, MESH_POSITIONS, MESH_INDICES, MESH_TEXCOORDS, MESH_ALPHA, MESH_BOUNDS),
+ * OUT_OF_MEMORY, CONTEXT_LOST. */
 PN_API pn_result pn_mesh_add(pn_casters *casters, const pn_mesh_desc *desc, pn_mesh *out);
 
-/* The mesh deformed. positions: new data of the same count in memory, or NULL when the contents of the GL buffer
- * changed. bounds: min and max in object space, six floats; NULL: computed (memory) or unchanged (GL buffer). */
+/* The mesh deformed. positions: new data of the same count in memory, of a mesh that came from memory, copied; or NULL
+ * when the contents of the GL buffer changed. bounds: min and max in object space, six floats; NULL: computed (memory)
+ * or unchanged (GL buffer). Its triangles are looked at anew: those without area in this pose are dropped.
+ * Errors: ARGUMENT (MESH_UNKNOWN, MESH_POSITIONS, MESH_BOUNDS); OUT_OF_MEMORY, CONTEXT_LOST, which leave the mesh to be
+ * moved again. */
 PN_API pn_result pn_mesh_moved(pn_casters *casters, pn_mesh mesh, const pn_span *positions, const float *bounds);
-PN_API pn_result pn_mesh_remove(pn_casters *casters, pn_mesh mesh); /* and its instances */
+
+/* Removes the mesh and its instances. Errors: ARGUMENT (MESH_UNKNOWN). */
+PN_API pn_result pn_mesh_remove(pn_casters *casters, pn_mesh mesh);
 
 #define PN_GROUP_COUNT 32
 #define PN_GROUPS_ALL 0xffffffffu
 
 /* Places a mesh. scene_from_object must be affine (last row 0 0 0 1); mirroring and zero scale are allowed. group
- * 0..31. out may be NULL for an instance that stays as it is. */
+ * 0..31. out may be NULL for an instance that stays as it is; out->id is 0 after a failure.
+ * Errors: ARGUMENT (NULL_ARGUMENT, MESH_UNKNOWN, INSTANCE_TRANSFORM, CASTER_GROUP), OUT_OF_MEMORY. */
 PN_API pn_result pn_instance_add(pn_casters *casters, pn_mesh mesh, const float scene_from_object[16], int group,
                                  pn_instance *out);
+
+/* Errors: ARGUMENT (NULL_ARGUMENT, INSTANCE_UNKNOWN, INSTANCE_TRANSFORM). */
 PN_API pn_result pn_instance_move(pn_casters *casters, pn_instance instance, const float scene_from_object[16]);
+
+/* Errors: ARGUMENT (INSTANCE_UNKNOWN). */
 PN_API pn_result pn_instance_remove(pn_casters *casters, pn_instance instance);
 
 /* Which surfaces a pass draws. */
 typedef enum { PN_FACES_ANY = 3, PN_FACES_FRONT = 1, PN_FACES_BACK = 2 } pn_faces;
 
-/* What a pass asks of the host's draw callback. Framebuffer, viewport, scissor, depth function, depth range, depth
- * clamp, culling and colour mask are set: do not change them. Program, vertex array, textures and buffers are the
- * callback's to bind. */
+/* What a pass asks of the host's draw callback; valid during it. Framebuffer, viewport, scissor, depth function, depth
+ * range, depth clamp, culling and colour mask are set: do not change them. Program, vertex array, textures and buffers
+ * are the callback's to bind. */
 typedef struct {
   const float *clip_from_scene; /* 16 floats; GL's own depth convention (-1 to 1), never a reversed one */
   /* plane_count times 4: n.p + d >= 0 inside, scene space, for the host's culling; around less than the matrix shows
@@ -274,9 +308,11 @@ typedef struct {
 } pn_caster_pass;
 typedef void (*pn_draw_fn)(void *user, const pn_caster_pass *pass);
 
-/* Casters drawn by the host's own shaders, beside any meshes: called once or more in each pn_maps_update. bounds: min
- * and max in scene space, six floats, that contain everything drawn. One callback for a group; draw NULL removes it.
- * The callback must not call the library. */
+/* Casters drawn by the host's own shaders, beside any meshes: called once or more in each pn_maps_update, never later.
+ * bounds: min and max in scene space, six floats, that contain everything drawn. One callback for a group, 0..31; draw
+ * NULL removes it, and bounds may be NULL then. Tell new bounds when what is drawn moves; the next pn_maps_update takes
+ * them. The callback may leave any GL state and must not call the library.
+ * Errors: ARGUMENT (NULL_ARGUMENT, CASTER_GROUP, CASTER_BOUNDS). */
 PN_API pn_result pn_casters_draw(pn_casters *casters, int group, pn_draw_fn draw, void *user, const float bounds[6]);
 
 /* ---- receiver: one camera view ----------------------------------------------------------------------------------- */
@@ -298,13 +334,14 @@ typedef enum {
 } pn_format;
 
 /* One camera view. The library reads the host's depth as it is: any depth format, any projection (perspective,
- * orthographic, off-centre, jittered, infinite, reversed), compare mode ignored. Set it each frame, after the depth
- * pre-pass. */
+ * orthographic, off-centre, jittered, infinite, reversed), compare mode ignored. Textures are referenced: keep them
+ * until the next pn_receiver_set. A zeroed description has every default; a source of depth, view and projection come
+ * to it. */
 typedef struct {
   pn_gl depth_texture;     /* 2D or 2D multisample (sample 0 is read); or */
   pn_gl depth_framebuffer; /* a framebuffer whose depth is copied (renderbuffers; multisample: sample 0), with */
   int use_framebuffer;     /* nonzero, since the default framebuffer is named 0 */
-  int x, y, width, height; /* the view inside it, pixels, GL's lower-left origin; width 0 = all of a texture */
+  int x, y, width, height; /* the view inside it, pixels, GL's lower-left origin; both sizes 0 = all of a texture */
   float view[16];          /* eye from scene */
   float projection[16];    /* clip from eye */
   int depth_zero_to_one;   /* nonzero: the projection maps to [0, 1] (glClipControl with GL_ZERO_TO_ONE) */
@@ -317,7 +354,7 @@ typedef struct {
   /* red = 0: not a receiver, visibility 1 is written. 0: everything receives. Size as the normal texture's */
   pn_gl mask_texture;
   int scale;          /* 1, 2 or 4: visibility is computed at 1/scale and brought up along depth and plane; 0 = 1 */
-  pn_format format;   /* of the results */
+  pn_format format;   /* of the results; not of pn_visibility_into */
 } pn_receiver_desc;
 /* As a zeroed one. */
 #ifdef __cplusplus
@@ -326,8 +363,19 @@ typedef struct {
 #define PN_RECEIVER_DEFAULTS {0}
 #endif
 
+/* Errors: ARGUMENT (NULL_ARGUMENT), OUT_OF_MEMORY. */
 PN_API pn_result pn_receiver_create(pn_context *context, pn_receiver **out);
-PN_API void pn_receiver_destroy(pn_receiver **receiver); /* and its results; clears the handle */
+
+/* And its results. Clears the handle. NULL and a NULL handle are fine. */
+PN_API void pn_receiver_destroy(pn_receiver **receiver);
+
+/* What the camera sees. It must be called in each frame in which depth or a matrix changed, after the depth pre-pass,
+ * and before pn_maps_update with PN_FIT_VISIBLE or PN_FIT_FRUSTUM: depth of a framebuffer or of a multisample texture
+ * is copied here, and without normals the slopes of depth are found once, in the first pn_visibility after it, and kept
+ * until the next call.
+ * Errors: ARGUMENT (NULL_ARGUMENT, RECEIVER_SOURCE, RECEIVER_DEPTH, RECEIVER_VIEW, RECEIVER_MATRIX, RECEIVER_NORMAL,
+ * RECEIVER_MASK, RECEIVER_SCALE, RECEIVER_FORMAT); where depth is copied UNSUPPORTED, OUT_OF_MEMORY, SHADER,
+ * CONTEXT_LOST. */
 PN_API pn_result pn_receiver_set(pn_receiver *receiver, const pn_receiver_desc *desc);
 
 /* ---- light ------------------------------------------------------------------------------------------------------- */
@@ -363,15 +411,21 @@ typedef struct {
   int map_width, map_height; /* texels of each depth map, 1..8192, any number; 0 = 512, height 0 = width */
 } pn_light_desc;
 
+/* Errors: ARGUMENT (NULL_ARGUMENT), OUT_OF_MEMORY. */
 PN_API pn_result pn_light_create(pn_context *context, pn_light **out);
-PN_API void pn_light_destroy(pn_light **light); /* and its maps and results; clears the handle */
 
-/* Sets or changes the light. Only what changed is made anew. */
+/* And its maps and results. Clears the handle. NULL and a NULL handle are fine. */
+PN_API void pn_light_destroy(pn_light **light);
+
+/* Sets or changes the light. After a change pn_maps_update must come before the next pn_visibility; the same
+ * description again changes nothing.
+ * Errors: ARGUMENT (NULL_ARGUMENT, LIGHT_SHAPE, LIGHT_SIZE, LIGHT_RANGE, LIGHT_FIT, LIGHT_MAP, LIGHT_FRAME),
+ * UNSUPPORTED (LIGHT_TEXTURE). */
 PN_API pn_result pn_light_set(pn_light *light, const pn_light_desc *desc);
 
 /* The frame of a light that shines along direction: u = normalize(direction x up), v = u x direction; where up is
  * parallel to direction it becomes (0, 0, -1), then (1, 0, 0). direction_out is unit. Any output may be NULL.
- * PN_ERROR_ARGUMENT: direction zero or not finite. */
+ * Errors: ARGUMENT, without a message: direction NULL, zero or not finite. */
 PN_API pn_result pn_light_frame(const float direction[3], const float up[3], float direction_out[3], float u[3],
                                 float v[3]);
 
@@ -405,45 +459,60 @@ PN_API const pn_technique *pn_technique_find(const char *name);     /* NULL when
 #define PN_TECHNIQUE_DEFAULT "bitmask"
 
 /* Chooses the technique and its parameters: "pcss" or "pcss:samples=16". Parameters not named take their defaults. On
- * failure why (may be NULL) receives one line that names what is wrong and what would be right, always terminated. A
- * new light has PN_TECHNIQUE_DEFAULT. */
+ * failure why (may be NULL) receives one line that names what is wrong and what would be right, always terminated; else
+ * it is empty. A new light has PN_TECHNIQUE_DEFAULT. After a change pn_maps_update must come before the next
+ * pn_visibility.
+ * Errors: ARGUMENT (NULL_ARGUMENT, TECHNIQUE_UNKNOWN, PARAMETER_UNKNOWN, PARAMETER_VALUE). */
 PN_API pn_result pn_light_technique(pn_light *light, const char *spec, char *why, size_t why_size);
 
-/* Checks a spec without a light or a context; values may be NULL or hold parameter_count numbers. */
+/* Checks a spec without a light or a context. technique, values and why may be NULL; values has room for
+ * parameter_count numbers. Errors: ARGUMENT, without a message: why says it. */
 PN_API pn_result pn_technique_parse(const char *spec, const pn_technique **technique, double *values, char *why,
                                     size_t why_size);
 
-/* Changes one parameter of the light's technique; a choice by its index. */
+/* Changes one parameter of the light's technique; a choice by its index, on and off as 1 and 0. "preset" sets the
+ * others too. Where it changes what the maps hold, pn_maps_update must come before the next pn_visibility.
+ * Errors: ARGUMENT (NULL_ARGUMENT, PARAMETER_UNKNOWN, PARAMETER_VALUE). */
 PN_API pn_result pn_light_parameter(pn_light *light, const char *name, double value);
 
-
-/* Compiles now what a light with this spec will need for a view like that one, and draws a pixel with all of it, because
- * drivers finish compiling at the first draw: no frame has to. spec NULL: PN_TECHNIQUE_DEFAULT. like: a description as
- * pn_receiver_set will get it. Of its textures it counts only whether there are any, and of its sizes only whether they are
- * powers of two, so that it may be filled before they exist. NULL: views as most hosts have them, with normals and without. */
+/* Compiles now what a light with this spec will need for a view like that one, and draws a small scene once with all of
+ * it, because drivers finish compiling at the first draw: no frame has to. spec NULL: PN_TECHNIQUE_DEFAULT. like: a
+ * description as pn_receiver_set will get it. Of its textures it counts only whether there are any, and of width and
+ * height only whether they are powers of two, so that it may be filled before they exist; matrices, format of depth and
+ * framebuffers play no part. NULL: views as most hosts have them, with normals and without. Only errors are logged.
+ * Errors: ARGUMENT (TECHNIQUE_UNKNOWN, PARAMETER_UNKNOWN, PARAMETER_VALUE, RECEIVER_NORMAL, RECEIVER_SCALE,
+ * RECEIVER_FORMAT), UNSUPPORTED, OUT_OF_MEMORY, SHADER, CONTEXT_LOST. */
 PN_API pn_result pn_prepare(pn_context *context, const char *spec, const pn_receiver_desc *like);
 
 /* ---- a frame ----------------------------------------------------------------------------------------------------- */
 
 /* Draws the light's depth maps. groups: a bit for each group that casts (PN_GROUPS_ALL). visible: the receivers that
- * PN_FIT_VISIBLE and PN_FIT_FRUSTUM look at; none: they fit to all casters. */
+ * PN_FIT_VISIBLE and PN_FIT_FRUSTUM look at, visible_count of them; 0: they fit to all casters. The maps stay until the
+ * next call; the casters may change or go meanwhile, but for the technique `average` (docs/techniques/average.md).
+ * Warnings: LIGHT_ANGLE, CASTER_MESHES.
+ * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (LIGHT_UNSET, RECEIVER_UNSET), UNSUPPORTED, OUT_OF_MEMORY, SHADER,
+ * CONTEXT_LOST. A failure may leave the light without maps: call it again before the next pn_visibility. */
 PN_API pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
                                 int visible_count);
 
 /* Maps to visibility buffer. Visibility is the unblocked fraction of the part of the light above the receiver's
  * geometric horizon, and 1 where no part is (surfaces that face away, or lie behind a rectangle), on background, and
- * where the mask says so. May be called without a new pn_maps_update: the maps stay. */
+ * where the mask says so. May be called without a new pn_maps_update: the maps stay.
+ * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (RECEIVER_UNSET, MAPS_STALE), UNSUPPORTED, OUT_OF_MEMORY, SHADER,
+ * CONTEXT_LOST. A failure leaves the pair without a result, but for those that are noticed before anything is drawn,
+ * ARGUMENT and NOT_READY. */
 PN_API pn_result pn_visibility(pn_light *light, pn_receiver *receiver);
 
 typedef struct {
   pn_gl texture;
   uint32_t target; /* GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY */
   uint32_t format; /* GL's sized internal format */
-  int width, height, layers, channels;
+  int width, height, layers, channels; /* layers: 0 of a 2D texture */
 } pn_image;
 
 /* The last result of the pair. The texture is the library's; it is valid until the pair's next pn_visibility, and the
- * same texture while size and format stay. */
+ * same texture while size and format stay. Row 0 is the view's lowest.
+ * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (MAPS_STALE). */
 PN_API pn_result pn_result_image(pn_light *light, pn_receiver *receiver, pn_image *out);
 
 /* Channels of a texture, to be added up. */
@@ -455,10 +524,14 @@ typedef struct {
    * origin of level 0 */
   pn_gl texture;
   int layer;    /* of an array; 0 of a 2D texture */
-  int channels; /* that are written, each with the same visibility: four lights fit into one RGBA texture. 0: all */
+  /* PN_CHANNEL_... that are written, each with the same visibility: four lights fit into one RGBA texture. 0: all that
+   * the texture has, alpha too */
+  int channels;
 } pn_target;
 
-/* As pn_visibility, but written into a texture of the host's; what pn_result_image tells stays as it was. */
+/* As pn_visibility, but written into a texture of the host's; what pn_result_image tells stays as it was. Other
+ * channels and what lies outside the view keep what they have.
+ * Errors: as pn_visibility, and ARGUMENT (RESULT_TARGET). */
 PN_API pn_result pn_visibility_into(pn_light *light, pn_receiver *receiver, const pn_target *target);
 
 /* The soft shadow map of the pair's last pn_visibility with the technique `ssm` (Soft Shadow Maps, section 3): how much
@@ -469,11 +542,11 @@ typedef struct {
   int sides, layers;    /* array layer = side * layers + receivers' layer, nearest to the light first */
   float s0, t0, s1, t1; /* bounds */
 } pn_soft_shadow_map;
-/* out is valid until the pair's next pn_visibility. PN_ERROR_NOT_READY when the last one had another technique, or no
- * shadow. */
+/* The texture is the library's, and valid until the pair's next pn_visibility or pn_visibility_into.
+ * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (MAPS_STALE): the last one had another technique, or no shadow. */
 PN_API pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver, pn_soft_shadow_map *out);
 
-/* Makes techniques tell what they did, as debug images. flags: the sum of what is wanted, 0 at first.
+/* Makes techniques tell what they did, as debug images. flags: the sum of what is wanted, 0 at first. Errors: none.
  * PN_DEBUG_SEARCH  "search", of techniques that search: red = class (0 no map was asked, 1 lit, 2 umbra, 3 penumbra),
  *                  green = blocks visited, blue = primitives covered, alpha = texels in the search windows; costs a
  *                  second colour target. Of technique `ssm`: "covered", in the layers of the soft shadow map, how many
@@ -483,17 +556,19 @@ PN_API pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver
 enum { PN_DEBUG_SEARCH = 1, PN_DEBUG_BOUND = 2 };
 PN_API pn_result pn_debug(pn_context *context, int flags);
 
-/* Intermediate images, for looking at: index from 0 until it returns 0. receiver may be NULL: the light's maps only. */
+/* Intermediate images, for looking at: index from 0 until it returns 0. receiver may be NULL: the light's only. Which
+ * there are depends on technique, receiver and pn_debug; docs/integration.md lists the names, which are static. The
+ * textures are the library's, valid until the light's next pn_maps_update or the pair's next pn_visibility. */
 PN_API int pn_debug_image(pn_light *light, pn_receiver *receiver, int index, const char **name, pn_image *out);
 
-/* What the last pn_maps_update drew. */
+/* What the last pn_maps_update drew. Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (MAPS_STALE). */
 typedef struct {
   int empty;          /* nothing casts here: no map was drawn, visibility is 1 */
   int tiles, layers;  /* maps in the (s, t) plane, and depth images of each */
   int width, height;  /* texels of each map */
   float s0, t0, s1, t1; /* bounds over all tiles in light map space (docs/space.md) */
   float w_near, w_far;
-  size_t gpu_memory;  /* bytes */
+  size_t gpu_memory;  /* bytes, of depth maps and ranges */
 } pn_maps_info;
 PN_API pn_result pn_light_maps(const pn_light *light, pn_maps_info *out);
 
@@ -505,7 +580,9 @@ PN_API pn_result pn_light_maps(const pn_light *light, pn_maps_info *out);
  * lights of pn_bind; the normal
  *                       on the side that is shaded, any length
  *   "caster"            void pn_peel(): call it first in the fragment shader of a draw callback
- * glsl_version: 330 and up, or 300 and up with es nonzero. */
+ * glsl_version: 330 and up, or 300 and up with es nonzero.
+ * Messages: NULL_ARGUMENT, FORWARD, TECHNIQUE_UNKNOWN, PARAMETER_UNKNOWN, PARAMETER_VALUE, SHADER_MISSING,
+ * OUT_OF_MEMORY. */
 PN_API const char *pn_glsl(pn_context *context, const char *spec, int glsl_version, int es);
 
 typedef struct {
@@ -515,9 +592,11 @@ typedef struct {
 
 #define PN_FORWARD_LIGHTS_MAX 4
 
-/* Binds the maps and the uniform block of count lights (1..4), which must share one technique spec, for a program
- * that contains pn_glsl's text, and sets its samplers. Stays bound until the host binds something else: the one call
- * that changes GL state on purpose. */
+/* Binds the maps and the uniform block of count lights (1..4) for a program that contains pn_glsl's text, and sets its
+ * samplers. The lights must share a technique, and agree in those of its parameters that are compiled in, which is
+ * where pn_glsl's texts would differ; the others may be each light's own. Stays bound until the host binds something
+ * else: the one call that changes GL state on purpose.
+ * Errors: ARGUMENT (NULL_ARGUMENT, FORWARD), NOT_READY (MAPS_STALE), OUT_OF_MEMORY, CONTEXT_LOST. */
 PN_API pn_result pn_bind(pn_light *const *lights, int count, pn_gl program, const pn_slots *slots);
 
 /* ---- time -------------------------------------------------------------------------------------------------------- */
@@ -529,11 +608,12 @@ typedef struct {
 
 /* Turns measuring on or off; off at first. On hardware: timestamp queries, read some frames later, no stall, never
  * nested in a query of the host's. On software GL, where queries lie: glFinish around each stage and a monotonic
- * clock. */
+ * clock. Errors: none. */
 PN_API pn_result pn_timing(pn_context *context, int enabled);
 
-/* Stage times of the latest frame of this light whose times are known: fills up to capacity, returns how many there
- * are. wait nonzero: finishes the GL's work first, so that the frame just drawn is known. */
+/* Stage times of the latest frame of this light whose times are known, over its maps and all its receivers: fills up to
+ * capacity, returns how many there are; 0 where an argument is wrong. wait nonzero: finishes the GL's work first, so
+ * that the frame just drawn is known. */
 PN_API int pn_times(pn_light *light, pn_time *out, int capacity, int wait);
 
 #ifdef __cplusplus
