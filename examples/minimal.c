@@ -53,8 +53,7 @@ static pn_result shadows_open(shadows *s, const renderer *r, const float box[16]
 /* After the depth pre-pass: a texture with the visible fraction of the light for each pixel. */
 static GLuint shadows_draw(shadows *s, GLuint depth, const float *box, const float *view, const float *projection) {
   pn_image visibility = {0};
-  pn_receiver_desc desc = PN_RECEIVER_DEFAULTS;
-  desc.depth_texture = depth;
+  pn_receiver_desc desc = {.depth_texture = depth};
   memcpy(desc.view, view, sizeof desc.view);
   memcpy(desc.projection, projection, sizeof desc.projection);
   pn_result result = pn_instance_move(s->casters, s->box, box);
