@@ -99,7 +99,10 @@ static pn_result check_lights(pn_light *const *lights, int count, const pn_slots
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_FORWARD, "1 to %d lights, units below %d, a binding below %d",
                     PN_FORWARD_LIGHTS_MAX, units, bindings);
   for (int i = 0; i < count; i++) {
-    if (!lights[i] || !lights[i]->technique->gathering.shader || !same_text(lights[i], lights[0]))
+    if (!lights[i] || lights[i]->object.context != lights[0]->object.context)
+      return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
+                      "pn_bind: a light is NULL, or of another context");
+    if (!lights[i]->technique->gathering.shader || !same_text(lights[i], lights[0]))
       return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_FORWARD,
                       "the lights must share a technique that has a forward form, and what is compiled of its "
                       "parameters");

@@ -33,7 +33,7 @@ typedef struct {
   pni_clock *clock;
 
   /* in pn_visibility only */
-  pn_receiver *receiver;
+  pn_receiver *receiver; /* NULL in pn_maps_update */
   void *pair_state;
   pni_texture *low, *search; /* for what gathers: visibility at reduced resolution; what a search did */
   pni_target target;

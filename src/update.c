@@ -119,6 +119,12 @@ pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, 
   pni_gpu *gpu = pni_light_gpu(light);
   if (!casters || (visible_count > 0 && !visible) || visible_count < 0)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_maps_update: casters or visible is NULL");
+  bool ours = casters->object.context == light->object.context;
+  for (int i = 0; i < visible_count; i++)
+    ours = ours && (!visible[i] || visible[i]->object.context == light->object.context);
+  if (!ours)
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
+                    "pn_maps_update: casters or a receiver of another context");
   if (!light->set) return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_LIGHT_UNSET, "pn_light_set comes first");
   light->casters = casters->object.serial;
   light->groups = groups;

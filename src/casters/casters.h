@@ -1,6 +1,6 @@
 /* What blocks light: meshes, instances, draw callbacks; and how a pass draws them. */
-#ifndef PN_CASTERS_CASTERS_H
-#define PN_CASTERS_CASTERS_H
+#ifndef PNI_CASTERS_CASTERS_H
+#define PNI_CASTERS_CASTERS_H
 
 #include "casters/mesh.h"
 #include "context.h"
@@ -45,7 +45,7 @@ typedef struct {
   pni_matrix clip_from_scene;
   pni_matrix cull_from_scene; /* the same, or of the part of the map that counts */
   uint32_t groups;
-  pn_faces faces;
+  bool without_host;       /* callbacks are not called: their time is pn_maps_update */
   const pni_texture *peel; /* the previous layer, or NULL */
   int layer;
 } pni_caster_draw;

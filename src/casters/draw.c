@@ -148,7 +148,7 @@ static pn_result call_host(pn_casters *casters, const pni_caster_draw *draw, int
 
 pn_result pni_casters_draw_pass(pn_casters *casters, const pni_caster_draw *draw) {
   pn_result result = draw_meshes(casters, draw);
-  for (int group = 0; group < PN_GROUP_COUNT && result == PN_OK; group++)
+  for (int group = 0; group < PN_GROUP_COUNT && result == PN_OK && !draw->without_host; group++)
     if (casters->callbacks[group].draw && (draw->groups >> group & 1)) result = call_host(casters, draw, group);
   return result;
 }

@@ -3,10 +3,15 @@
 #include <ctype.h>
 #include <stdio.h>
 
+enum { NAME_MOST = 32 };
+
 /* ---- defines ----------------------------------------------------------------------------------------------------- */
 
+_Static_assert(PNI_PARAMETERS_MAX *(sizeof "PN_PARAMETER_ 31\n" + NAME_MOST) < PNI_TECHNIQUE_DEFINES - 256,
+               "names fit");
+
 static int name_parameter(const char *name, int index, char *out, size_t size) {
-  char upper[40];
+  char upper[NAME_MOST];
   int i = 0;
   for (; name[i] && i < (int)sizeof upper - 1; i++) upper[i] = (char)toupper((unsigned char)name[i]);
   upper[i] = 0;
@@ -15,7 +20,7 @@ static int name_parameter(const char *name, int index, char *out, size_t size) {
 
 void pni_gather_defines(const pni_gathering *gathering, const pn_technique *table, const double *values,
                         char out[PNI_TECHNIQUE_DEFINES]) {
-  int used = 0;
+  int used = 0; /* 32 names of at most 32 letters fit */
   for (int i = 0; i < table->parameter_count; i++)
     used += name_parameter(table->parameters[i].name, i, out + used, (size_t)(PNI_TECHNIQUE_DEFINES - used));
   out[used] = 0;

@@ -1,6 +1,6 @@
 /* The .glsl files of src/, embedded by the build (cmake/embed_shaders.cmake). */
-#ifndef PENUMBRA_GL_EMBEDDED_H
-#define PENUMBRA_GL_EMBEDDED_H
+#ifndef PNI_GL_EMBEDDED_H
+#define PNI_GL_EMBEDDED_H
 
 typedef struct {
   const char *path; /* relative to src/, for example "techniques/hard/hard.glsl" */

@@ -1,8 +1,8 @@
 /* Every GL function the library calls. The table holds pointers to function pointers: with libepoxy they point at its
  * lazily resolving variables, with a host's loader at the storage beside the table. Call as GL(gpu, DrawArrays)(...);
  * builds with assertions count the calls. */
-#ifndef PN_GL_FUNCTIONS_H
-#define PN_GL_FUNCTIONS_H
+#ifndef PNI_GL_FUNCTIONS_H
+#define PNI_GL_FUNCTIONS_H
 
 #include <epoxy/gl.h>
 
@@ -20,7 +20,6 @@
   X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate) \
   X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer) \
   X(PFNGLBUFFERDATAPROC, BufferData) \
-  X(PFNGLBUFFERSUBDATAPROC, BufferSubData) \
   X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus) \
   X(PFNGLCLAMPCOLORPROC, ClampColor) \
   X(PFNGLCLEARBUFFERFVPROC, ClearBufferfv) \
@@ -68,7 +67,6 @@
   X(PFNGLGETBOOLEANI_VPROC, GetBooleani_v) \
   X(PFNGLGETDOUBLEVPROC, GetDoublev) \
   X(PFNGLGETERRORPROC, GetError) \
-  X(PFNGLGETFLOATVPROC, GetFloatv) \
   X(PFNGLGETFRAMEBUFFERATTACHMENTPARAMETERIVPROC, GetFramebufferAttachmentParameteriv) \
   X(PFNGLGETINTEGERVPROC, GetIntegerv) \
   X(PFNGLGETMULTISAMPLEFVPROC, GetMultisamplefv) \
@@ -94,7 +92,6 @@
   X(PFNGLISBUFFERPROC, IsBuffer) \
   X(PFNGLISFRAMEBUFFERPROC, IsFramebuffer) \
   X(PFNGLLINKPROGRAMPROC, LinkProgram) \
-  X(PFNGLLOGICOPPROC, LogicOp) \
   X(PFNGLPIXELSTOREIPROC, PixelStorei) \
   X(PFNGLPOLYGONMODEPROC, PolygonMode) \
   X(PFNGLPROVOKINGVERTEXPROC, ProvokingVertex) \
@@ -110,7 +107,6 @@
   X(PFNGLTEXSUBIMAGE2DPROC, TexSubImage2D) \
   X(PFNGLUNIFORM1FPROC, Uniform1f) \
   X(PFNGLUNIFORM1IPROC, Uniform1i) \
-  X(PFNGLUNIFORM2IPROC, Uniform2i) \
   X(PFNGLUNIFORM4FVPROC, Uniform4fv) \
   X(PFNGLUNIFORM4IVPROC, Uniform4iv) \
   X(PFNGLUNIFORMBLOCKBINDINGPROC, UniformBlockBinding) \

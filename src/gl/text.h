@@ -1,6 +1,6 @@
 /* A growing string. */
-#ifndef PN_GL_TEXT_H
-#define PN_GL_TEXT_H
+#ifndef PNI_GL_TEXT_H
+#define PNI_GL_TEXT_H
 
 #include "gl/gpu.h"
 

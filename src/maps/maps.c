@@ -127,6 +127,7 @@ static pn_result draw_layer(const drawing *d, pni_image target, int layer, bool 
                           .clip_from_scene = d->clip_from_scene,
                           .cull_from_scene = later ? d->cull_from_scene : d->clip_from_scene,
                           .groups = d->draw->groups,
+                          .without_host = d->draw->without_host,
                           .peel = peel,
                           .layer = layer};
   return pni_casters_draw_pass(d->draw->casters, &draw);

@@ -17,7 +17,8 @@ typedef struct {
   pn_casters *casters;
   uint32_t groups;
   double bounds[4], w_near, w_far, shear[2];
-  pni_part later; /* with want.focus: the texels that layers past the first are drawn over */
+  pni_part later;    /* with want.focus: the texels that layers past the first are drawn over */
+  bool without_host; /* callbacks are not called: their time is pn_maps_update */
 } pni_map_draw;
 pn_result pni_maps_add(pni_gpu *gpu, pni_maps *maps, const pni_map_draw *draw);
 

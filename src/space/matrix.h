@@ -1,6 +1,6 @@
 /* 4x4 matrices in double, column-major, for composing what is then handed to GL in float. */
-#ifndef PN_SPACE_MATRIX_H
-#define PN_SPACE_MATRIX_H
+#ifndef PNI_SPACE_MATRIX_H
+#define PNI_SPACE_MATRIX_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* Parts of light map space: what a light's receivers occupy. */
-#ifndef PN_SPACE_REGION_H
-#define PN_SPACE_REGION_H
+#ifndef PNI_SPACE_REGION_H
+#define PNI_SPACE_REGION_H
 
 #include "space/space.h"
 

@@ -1,13 +1,13 @@
 /* Light map space (s, t, w): one formula for everything (docs/space.md). space.glsl has the same functions under the
- * same names; tests/unit/test_space.c holds the two together.
+ * same names; tests/unit/test_space_glsl.c holds the two together.
  *
  *   rectangle  s = x / z   t = y / z   w = 1 / z     with (x, y, z) in the light's frame: origin at its centre,
  *   sun        s = x       t = y       w = -z        z where it shines
  *
  * A receiver R sees an occluder Q in front of the light's point ((s_Q - s_R) / (w_Q - w_R), (t_Q - t_R) / (w_Q -
  * w_R)). */
-#ifndef PN_SPACE_SPACE_H
-#define PN_SPACE_SPACE_H
+#ifndef PNI_SPACE_SPACE_H
+#define PNI_SPACE_SPACE_H
 
 #include <penumbra/penumbra.h>
 #include "space/matrix.h"

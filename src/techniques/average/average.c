@@ -25,10 +25,7 @@ static void preset(int choice, double *values) {
 
 /* It draws its maps itself, batch by batch; pn_maps_update only finds out whether anything casts, and has the host
  * draw. */
-static void want(const double *values, pni_maps_want *out) {
-  (void)values;
-  *out = (pni_maps_want){0};
-}
+static void want(const double *values, pni_maps_want *out) { *out = (pni_maps_want){.variant = (int)values[SAMPLES]}; }
 
 /* Radical inverse in base 2. */
 static double mirrored(uint32_t i) {
@@ -120,7 +117,8 @@ static pn_result draw_map(const pni_job *job, pni_maps *batch, const double shea
                        .bounds = {fit.bounds[0], fit.bounds[1], fit.bounds[2], fit.bounds[3]},
                        .w_near = fit.w_near,
                        .w_far = fit.w_far,
-                       .shear = {shear[0], shear[1]}};
+                       .shear = {shear[0], shear[1]},
+                       .without_host = job->receiver != NULL};
   if (fit.tiles == 1)
     for (int i = 0; i < 4; i++) draw.bounds[i] = fit.tile[0][i];
   return pni_maps_add(job->gpu, batch, &draw);

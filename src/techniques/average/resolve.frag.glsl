@@ -5,5 +5,5 @@ layout(location = 0) out vec4 pn_out;
 
 void main() {
   vec2 counts = texelFetch(pn_counts, ivec2(gl_FragCoord.xy), 0).rg;
-  pn_out = vec4(vec3(counts.y > 0.0 ? counts.x / counts.y : 1.0), 1.0);
+  pn_out = vec4(counts.y > 0.0 ? counts.x / counts.y : 1.0);
 }

@@ -78,6 +78,6 @@ void main() {
 #if PN_BOUND
   pn_out = vec4(hidden, 0.0, 0.0, 1.0);
 #else
-  pn_out = vec4(vec3(1.0 - hidden), 1.0);
+  pn_out = vec4(1.0 - hidden);
 #endif
 }
