@@ -415,9 +415,7 @@ static int setup(void **state) {
   if (!host_open(&h)) exit(77);
   odd_open(&odd);
   for (int i = 0; i < VIEWS; i++) {
-    views[i] = camera_at(cameras[i]);
-    views[i].width = views[i].target_width = WIDTH;
-    views[i].height = views[i].target_height = HEIGHT;
+    views[i] = camera_sized(cameras[i], WIDTH, HEIGHT);
     if (!target_open(&targets[i], &views[i])) return -1;
     renderer_depth(&h.draw, &h.world, &views[i], &targets[i]);
   }
