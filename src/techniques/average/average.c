@@ -24,11 +24,8 @@ static void preset(int choice, double *values) {
 }
 
 /* It draws its maps itself, batch by batch; pn_maps_update only finds out whether anything casts, and has the host
- * draw. */
-static void want(const double *values, pni_maps_want *out) {
-  (void)values;
-  *out = (pni_maps_want){0};
-}
+ * draw: as many maps as there are samples, so that with another number it has to again. */
+static void want(const double *values, pni_maps_want *out) { *out = (pni_maps_want){.variant = (int)values[SAMPLES]}; }
 
 /* Radical inverse in base 2. */
 static double mirrored(uint32_t i) {
