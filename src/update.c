@@ -83,12 +83,13 @@ static pn_result draw_maps(pn_light *light, pn_casters *casters, const pni_maps_
   return result;
 }
 
-/* What the technique makes of the maps. */
+/* What the technique makes of the maps. Where nothing casts that is nothing, and what another technique kept goes all
+ * the same. */
 static pn_result update_technique(pn_light *light) {
   const pni_technique_class *technique = light->technique;
   pni_job job;
   pn_result result = pni_light_job(light, &job);
-  if (result != PN_OK || !technique->update) return result;
+  if (result != PN_OK || !technique->update || light->maps.fit.empty) return result;
   result = pni_light_bind_block(light);
   if (result == PN_OK) result = technique->update(&job);
   pni_clock_mark(job.gpu, &light->clock, technique->stage);
@@ -108,7 +109,7 @@ static pn_result update_maps(pn_light *light, pn_casters *casters, pn_receiver *
     fit_light(light, casters, &want);
   }
   if (!light->maps.fit.empty) result = draw_maps(light, casters, &want);
-  if (!light->maps.fit.empty && result == PN_OK) result = update_technique(light);
+  if (result == PN_OK) result = update_technique(light);
   light->maps.ready = result == PN_OK;
   return result;
 }
