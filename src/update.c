@@ -69,7 +69,7 @@ static pn_result draw_maps(pn_light *light, pn_casters *casters, const pni_maps_
   pni_gpu *gpu = pni_light_gpu(light);
   pni_maps *maps = &light->maps;
   pn_result result = pni_maps_shape(gpu, maps, want, maps->fit.tiles, light->desc.map_width, light->desc.map_height);
-  if (result != PN_OK) return result;
+  if (result != PN_OK || pni_want_layers(want) == 0) return result;
   pni_maps_describe(gpu, maps, &light->frame, &light->emission);
   for (int tile = 0; tile < maps->fit.tiles && result == PN_OK; tile++) {
     pni_map_draw draw = tile_draw(light, casters, want, tile);
@@ -83,12 +83,13 @@ static pn_result draw_maps(pn_light *light, pn_casters *casters, const pni_maps_
   return result;
 }
 
-/* What the technique makes of the maps. */
+/* What the technique makes of the maps. Where nothing casts that is nothing, and what another technique kept goes all
+ * the same. */
 static pn_result update_technique(pn_light *light) {
   const pni_technique_class *technique = light->technique;
   pni_job job;
   pn_result result = pni_light_job(light, &job);
-  if (result != PN_OK || !technique->update) return result;
+  if (result != PN_OK || !technique->update || light->maps.fit.empty) return result;
   result = pni_light_bind_block(light);
   if (result == PN_OK) result = technique->update(&job);
   pni_clock_mark(job.gpu, &light->clock, technique->stage);
@@ -107,8 +108,8 @@ static pn_result update_maps(pn_light *light, pn_casters *casters, pn_receiver *
     if (result != PN_OK) return result;
     fit_light(light, casters, &want);
   }
-  if (!light->maps.fit.empty && pni_want_layers(&want) > 0) result = draw_maps(light, casters, &want);
-  if (!light->maps.fit.empty && result == PN_OK) result = update_technique(light);
+  if (!light->maps.fit.empty) result = draw_maps(light, casters, &want);
+  if (result == PN_OK) result = update_technique(light);
   light->maps.ready = result == PN_OK;
   return result;
 }

@@ -47,7 +47,7 @@ static pn_result check_alpha(pni_gpu *gpu, const pn_mesh_desc *d) {
   if (!d->alpha_texture || !span_sound(gpu, &d->texcoords, 8) || d->texcoords.count < d->positions.count)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_TEXCOORDS,
                     "an alpha texture and two floats for each position come together");
-  if (!pni_texture_exists(gpu, d->alpha_texture) || d->alpha_channel < 0 || d->alpha_channel > 3 ||
+  if (!pni_texture_is_2d(gpu, d->alpha_texture) || d->alpha_channel < 0 || d->alpha_channel > 3 ||
       !(d->alpha_cutoff >= 0) || !(d->alpha_cutoff <= 1))
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_ALPHA, "alpha: a texture, channel 0..3, cutoff in [0, 1]");
   return PN_OK;

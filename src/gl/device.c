@@ -70,6 +70,8 @@ static void read_capabilities(pni_gpu *gpu) {
   can->blend_buffers = function && can->version >= 40;
   function = !gpu->desc.get_proc_address || gpu->storage.DrawArraysIndirect;
   can->indirect = function && (can->version >= 40 || has_extension(gpu, "GL_ARB_draw_indirect"));
+  function = !gpu->desc.get_proc_address || gpu->storage.GetTextureParameteriv;
+  can->targets = function && (can->version >= 45 || has_extension(gpu, "GL_ARB_direct_state_access"));
   function = !gpu->desc.get_proc_address ||
              (gpu->storage.ObjectLabel && gpu->storage.PushDebugGroup && gpu->storage.PopDebugGroup);
   can->labels = function && (can->version >= 43 || has_extension(gpu, "GL_KHR_debug"));

@@ -18,6 +18,7 @@ typedef struct {
   bool blend_buffers; /* 4.0: each draw buffer has its own blend function */
   bool indirect;      /* 4.0 or ARB_draw_indirect: draws whose counts lie in a buffer */
   bool fixed_restart; /* GL_PRIMITIVE_RESTART_FIXED_INDEX, 4.3 */
+  bool targets;       /* 4.5 or ARB_direct_state_access: textures tell what kind they are */
   bool labels;        /* 4.3 or KHR_debug: objects and passes have names */
   int texture_size_max, layers_max, draw_buffers, subpixel_bits, clip_distances, sample_mask_words, debug_groups;
 } pni_capabilities;

@@ -5,6 +5,17 @@
 
 bool pni_texture_exists(pni_gpu *gpu, pn_gl texture) { return GL(gpu, IsTexture)(texture); }
 
+/* Binding a texture to another one's target is an error. True too where the device cannot tell. */
+static bool has_target(pni_gpu *gpu, pn_gl texture, GLenum target) {
+  GLint is = GL_NONE;
+  if (!pni_texture_exists(gpu, texture)) return false;
+  if (!gpu->can.targets) return true;
+  GL(gpu, GetTextureParameteriv)(texture, GL_TEXTURE_TARGET, &is);
+  return (GLenum)is == target;
+}
+
+bool pni_texture_is_2d(pni_gpu *gpu, pn_gl texture) { return has_target(gpu, texture, GL_TEXTURE_2D); }
+
 bool pni_framebuffer_exists(pni_gpu *gpu, pn_gl framebuffer) { return GL(gpu, IsFramebuffer)(framebuffer); }
 
 /* ---- depth ------------------------------------------------------------------------------------------------------- */
@@ -41,9 +52,10 @@ static void clear_framebuffer(pni_gpu *gpu) {
 }
 
 /* GL 3.3 cannot ask a texture for its target, and binding it to the wrong one is an error; attaching it to a
- * framebuffer tells what is needed. */
+ * framebuffer tells most of what is needed, but not rectangles from 2D. */
 bool pni_inspect_depth(pni_gpu *gpu, pn_gl texture, pni_depth_source *out) {
   GLenum none = GL_NONE;
+  if (!has_target(gpu, texture, GL_TEXTURE_2D) && !has_target(gpu, texture, GL_TEXTURE_2D_MULTISAMPLE)) return false;
   clear_framebuffer(gpu);
   GL(gpu, DrawBuffers)(1, &none);
   GL(gpu, FramebufferTexture)(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, texture, 0);
@@ -131,7 +143,7 @@ static int color_channels(pni_gpu *gpu) {
 
 bool pni_inspect_target(pni_gpu *gpu, pn_gl texture, pni_target_kind *out) {
   GLenum color = GL_COLOR_ATTACHMENT0;
-  GLint layered = 0;
+  GLint layered = 0, samples = 0;
   int channels = 0;
   if (!texture || !pni_texture_exists(gpu, texture)) return false;
   clear_framebuffer(gpu);
@@ -140,9 +152,10 @@ bool pni_inspect_target(pni_gpu *gpu, pn_gl texture, pni_target_kind *out) {
   bool sound = GL(gpu, CheckFramebufferStatus)(GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   if (sound) layered = attachment_parameter(gpu, GL_DRAW_FRAMEBUFFER, color, GL_FRAMEBUFFER_ATTACHMENT_LAYERED);
   if (sound) channels = color_channels(gpu);
+  if (sound) GL(gpu, GetIntegerv)(GL_SAMPLES, &samples);
   GL(gpu, FramebufferTexture2D)(GL_DRAW_FRAMEBUFFER, color, GL_TEXTURE_2D, 0, 0);
-  if (!sound) return false;
   GLenum target = layered ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+  if (!sound || samples > 0 || !has_target(gpu, texture, target)) return false;
   pni_bind_scratch(gpu, target, texture);
   *out = (pni_target_kind){layered != 0, level_parameter(gpu, target, GL_TEXTURE_WIDTH),
                            level_parameter(gpu, target, GL_TEXTURE_HEIGHT),

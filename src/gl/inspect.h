@@ -12,6 +12,8 @@ typedef struct {
 } pni_depth_source;
 
 bool pni_texture_exists(pni_gpu *gpu, pn_gl texture);
+/* A 2D texture, as far as the device can tell (4.5). */
+bool pni_texture_is_2d(pni_gpu *gpu, pn_gl texture);
 bool pni_framebuffer_exists(pni_gpu *gpu, pn_gl framebuffer);
 /* False where it is no 2D or 2D multisample texture with depth. */
 bool pni_inspect_depth(pni_gpu *gpu, pn_gl texture, pni_depth_source *out);

@@ -7,8 +7,20 @@
 
 /* ---- textures ---------------------------------------------------------------------------------------------------- */
 
+static void free_textures(pni_gpu *gpu, pni_maps *maps, bool abandon) {
+  pni_texture *all[] = {&maps->depth, &maps->range, &maps->peel[0], &maps->peel[1], &maps->aside};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) pni_texture_free(gpu, all[i], abandon);
+}
+
+/* What another technique wanted is not kept. */
 pn_result pni_maps_shape(pni_gpu *gpu, pni_maps *maps, const pni_maps_want *want, int count, int width, int height) {
   int layers = pni_want_layers(want);
+  if (want->range.structure != PNI_RANGE_STACK) pni_texture_free(gpu, &maps->aside, false);
+  if (layers == 0) {
+    free_textures(gpu, maps, false);
+    maps->want = *want;
+    return PN_OK;
+  }
   pn_result result =
       pni_texture_shape(gpu, &maps->depth, "light depth maps", PNI_DEPTH32F, width, height, layers * count, 1);
   for (int i = 0; i < 2 && result == PN_OK; i++) {
@@ -22,11 +34,7 @@ pn_result pni_maps_shape(pni_gpu *gpu, pni_maps *maps, const pni_maps_want *want
 }
 
 void pni_maps_free(pni_gpu *gpu, pni_maps *maps, bool abandon) {
-  pni_texture_free(gpu, &maps->depth, abandon);
-  pni_texture_free(gpu, &maps->range, abandon);
-  pni_texture_free(gpu, &maps->peel[0], abandon);
-  pni_texture_free(gpu, &maps->peel[1], abandon);
-  pni_texture_free(gpu, &maps->aside, abandon);
+  free_textures(gpu, maps, abandon);
   memset(maps, 0, sizeof *maps);
 }
 

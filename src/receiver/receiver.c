@@ -89,7 +89,7 @@ static pn_result check_companion(pni_gpu *gpu, const pn_receiver_desc *d, pn_gl 
                                  const char *name) {
   if (!texture) return PN_OK;
   int width = 0, height = 0;
-  if (pni_texture_exists(gpu, texture)) pni_inspect_size(gpu, texture, false, &width, &height);
+  if (pni_texture_is_2d(gpu, texture)) pni_inspect_size(gpu, texture, false, &width, &height);
   int x = d->depth_texture ? d->x : 0, y = d->depth_texture ? d->y : 0;
   if (width >= x + d->width && height >= y + d->height) return PN_OK;
   return pni_fail(gpu, PN_ERROR_ARGUMENT, message, "the %s texture, %d x %d, does not cover the view", name, width,

@@ -10,7 +10,7 @@ static void test_listed(void **state) {
   (void)state;
   const pn_technique *flat = pn_technique_find("flat");
   assert_non_null(flat);
-  assert_ptr_equal(pn_technique_at(pn_technique_count() - 1), flat);
+  assert_ptr_equal(pn_technique_at(pn_technique_count() - 2), flat);
   assert_null(pn_technique_at(pn_technique_count()));
   assert_string_equal(flat->title, "flat shadow");
   assert_int_equal(flat->parameter_count, 1);
@@ -67,11 +67,31 @@ static void test_drawn(void **state) {
   over_ground_close(&c);
 }
 
+/* Each parameter is read from its own place: the last of twenty is what its name says, whatever the others are. */
+static void test_many(void **state) {
+  (void)state;
+  over_ground c = {0};
+  soup_patch(&c.casters, v3(0, LIGHT_HEIGHT / 2, 0), v3(1, 0, 0), v3(0, 0, 1));
+  over_ground_open(&c, SIZE, 3);
+  pn_light_desc light = light_over_ground(0.3, 0.3, 64);
+  float *image = stage_visibility(&c.s, &light, "many:nineteenth=0.125,twentieth=0.75,first=0");
+  for (int i = 0; i < SIZE * SIZE; i++) assert_true(image[i] == 0.75f);
+  free(image);
+  assert_ok(pn_light_parameter(c.s.light, "twentieth", 0.25));
+  image = stage_look(&c.s);
+  for (int i = 0; i < SIZE * SIZE; i++) assert_true(image[i] == 0.25f);
+  free(image);
+  assert_int_equal(pn_technique_find("many")->parameter_count, 20);
+  assert_non_null(pn_glsl(c.s.context, "many", 330, 0));
+  over_ground_close(&c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_listed),
       cmocka_unit_test(test_parsed),
       cmocka_unit_test(test_drawn),
+      cmocka_unit_test(test_many),
   };
   return GL_RUN("added", tests);
 }

@@ -39,6 +39,13 @@ static mat4 negative_depth(mat4 m) {
   return m;
 }
 
+camera camera_sized(int index, int width, int height) {
+  camera out = camera_at(index);
+  out.width = out.target_width = width;
+  out.height = out.target_height = height;
+  return out;
+}
+
 camera camera_from(vec3 eye, vec3 target) {
   camera out = {.name = "perspective-d32f", .format = GL_DEPTH_COMPONENT32F, .same_rays = 1};
   out.width = out.target_width = CAMERA_WIDTH;

@@ -28,6 +28,9 @@ extern const double camera_fov_tangent;
 /* Camera 0 is the baseline: perspective, D32F, 320 x 240. */
 camera camera_at(int index);
 
+/* The same view in fewer pixels, which fill its target. */
+camera camera_sized(int index, int width, int height);
+
 /* The baseline seen from elsewhere. */
 camera camera_from(vec3 eye, vec3 target);
 

@@ -38,8 +38,11 @@ static void write_code(unsigned char *out, const int64_t *counter, const void *f
   memcpy(out + 23, jump, 2);
 }
 
+/* A function is counted in one place, however many contexts ask for it. */
 void *counted_address(void *user, const char *name) {
   void *function = gl_address(user, name);
+  for (int i = 0; i < function_count; i++)
+    if (strcmp(functions[i].name, name) == 0) return code + i * CODE_BYTES;
   if (!function || function_count == FUNCTIONS || strlen(name) >= sizeof functions[0].name) return function;
   int i = function_count++;
   strcpy(functions[i].name, name);

@@ -64,7 +64,8 @@
   X(BLENDFUNCSEPARATEI, BlendFuncSeparatei) X(BINDVERTEXBUFFER, BindVertexBuffer) \
   X(VIEWPORTINDEXEDF, ViewportIndexedf) X(SCISSORINDEXED, ScissorIndexed) X(DEPTHRANGEINDEXED, DepthRangeIndexed) \
   X(GETFLOATI_V, GetFloati_v) X(GETDOUBLEI_V, GetDoublei_v) X(MINSAMPLESHADING, MinSampleShading) \
-  X(PATCHPARAMETERI, PatchParameteri) X(PATCHPARAMETERFV, PatchParameterfv)
+  X(PATCHPARAMETERI, PatchParameteri) X(PATCHPARAMETERFV, PatchParameterfv) \
+  X(GETOBJECTLABEL, GetObjectLabel) X(PUSHDEBUGGROUP, PushDebugGroup) X(POPDEBUGGROUP, PopDebugGroup)
 
 /* clang-format on */
 

@@ -232,3 +232,25 @@ float *host_visibility(host *self, pn_light *light, const camera_view *view) {
   if (pn_visibility(light, view->receiver) != PN_OK) return NULL;
   return host_result(light, view->receiver);
 }
+
+size_t host_gpu_memory(const host *self) {
+  pn_info info = {0};
+  return pn_context_info(self->context, &info) == PN_OK ? info.gpu_memory : 0;
+}
+
+const char *host_spec(int index) {
+  static const char *const variants[] = {"average:samples=20",
+                                         "bitmask:maps=layers",
+                                         "bitmask:maps=layers,layers=4,focus=40",
+                                         "bitmask:merge=0",
+                                         "bitmask:merge=0,hierarchy=none",
+                                         "ssm:accumulate=fp16-batched",
+                                         "ssm:sides=front,extents=cpu",
+                                         "smoothies:geometry=edges,width=0.1"};
+  enum { VARIANTS = sizeof variants / sizeof *variants };
+  if (index < VARIANTS) return variants[index];
+  const pn_technique *t = NULL;
+  for (int i = 0, left = index - VARIANTS; (t = pn_technique_at(i)); i++)
+    if (strcmp(t->name, "average") != 0 && left-- == 0) return t->name;
+  return NULL;
+}

@@ -78,4 +78,11 @@ void host_lit_view_close(host *self, lit_view *lit);
 float *host_visibility(host *self, pn_light *light, const camera_view *view);
 float *host_result(pn_light *light, pn_receiver *receiver);
 
+/* Bytes that the library holds in GL. */
+size_t host_gpu_memory(const host *self);
+
+/* Specs that between them take every way through the library: each technique of the list, what its parameters draw
+ * differently, few samples where many take their time. NULL past the last. */
+const char *host_spec(int index);
+
 #endif

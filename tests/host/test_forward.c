@@ -107,6 +107,86 @@ static void test_forward(void **state) {
   host_uncast(h);
 }
 
+/* ---- which lights go together ------------------------------------------------------------------------------------ */
+
+static pn_result bind_two(host *h, const char *const specs[2], uint32_t groups) {
+  static const pn_slots slots = {7, 3};
+  pn_light_desc desc = host_light_desc();
+  pn_light *lights[2];
+  desc.map_width = 32;
+  for (int i = 0; i < 2; i++) {
+    assert_int_equal(host_light(h, &desc, specs[i], &lights[i]), PN_OK);
+    assert_int_equal(pn_maps_update(lights[i], h->casters, groups, NULL, 0), PN_OK);
+  }
+  const char *text = pn_glsl(h->context, specs[0], 330, 0);
+  assert_non_null(text);
+  GLuint program = renderer_program(text, body);
+  assert_true(program != 0);
+  pn_result result = pn_bind(lights, 2, program, &slots);
+  gl.DeleteProgram(program);
+  for (int i = 0; i < 2; i++) pn_light_destroy(&lights[i]);
+  return result;
+}
+
+/* Lights share a program where its text is the same for both: what is compiled of their parameters must be alike, what
+ * is read from the block may differ. */
+static void test_lights_together(void **state) {
+  static const struct {
+    const char *specs[2];
+    pn_result result;
+  } pairs[] = {
+      {{"bitmask", "bitmask:samples=8"}, PN_ERROR_ARGUMENT},
+      {{"bitmask:samples=8", "bitmask:samples=8"}, PN_OK},
+      {{"bitmask", "bitmask:merge=3"}, PN_OK},
+      {{"bitmask", "bitmask:merge=0"}, PN_ERROR_ARGUMENT}, /* no merging is another search */
+      {{"bitmask:cap=3", "bitmask:cap=8"}, PN_OK},
+      {{"bitmask", "bitmask:primitive=patch"}, PN_ERROR_ARGUMENT},
+      {{"pcf:taps=3", "pcf:taps=9"}, PN_OK},
+      {{"pcf", "pcss"}, PN_ERROR_ARGUMENT},
+      {{"smoothies:geometry=edges", "smoothies:width=0.2"}, PN_OK},
+  };
+  host *h = *state;
+  assert_int_equal(host_cast(h, CAST_MEMORY), PN_OK);
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+    int told = h->log.counts[PN_MESSAGE_FORWARD];
+    pn_result result = bind_two(h, pairs[i].specs, PN_GROUPS_ALL);
+    if (result != pairs[i].result)
+      fail_msg("%s with %s: %s", pairs[i].specs[0], pairs[i].specs[1], pn_result_name(result));
+    assert_int_equal(h->log.counts[PN_MESSAGE_FORWARD], told + (result != PN_OK));
+  }
+  host_uncast(h);
+}
+
+/* A light under which nothing casts binds nothing that it has kept from another technique. */
+static void test_nothing_casts(void **state) {
+  static const pn_slots slots = {7, 3};
+  static const char *const others[] = {"average:samples=40", "ssm", "bitmask", "hard"};
+  host *h = *state;
+  assert_int_equal(host_cast(h, CAST_MEMORY), PN_OK);
+  const char *text = pn_glsl(h->context, "smoothies", 330, 0);
+  GLuint program = renderer_program(text, body);
+  assert_true(program != 0);
+  for (int i = 0; i < 4; i++) {
+    camera view = camera_sized(0, 32, 24);
+    camera_view v;
+    pn_light_desc desc = host_light_desc();
+    pn_light *light = NULL;
+    assert_int_equal(host_view(h, &view, &v), PN_OK);
+    assert_int_equal(host_light(h, &desc, others[i], &light), PN_OK);
+    free(host_visibility(h, light, &v));
+    assert_int_equal(pn_light_technique(light, "smoothies", NULL, 0), PN_OK);
+    assert_int_equal(pn_maps_update(light, h->casters, 0, NULL, 0), PN_OK);
+    assert_int_equal(pn_bind(&light, 1, program, &slots), PN_OK);
+    assert_int_equal(gl_errors(), 0);
+    pn_light_destroy(&light);
+    host_view_close(&v);
+  }
+  gl.DeleteProgram(program);
+  host_uncast(h);
+}
+
+/* ---- texts ------------------------------------------------------------------------------------------------------- */
+
 /* A program drawn after the host changed everything else still finds its maps: pn_bind's bindings stay. The same text
  * compiles with the caster's snippet beside it. */
 static void test_texts_together(void **state) {
@@ -163,6 +243,8 @@ static void test_es(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_teardown(test_forward, host_check),
+      cmocka_unit_test_teardown(test_lights_together, host_check),
+      cmocka_unit_test_teardown(test_nothing_casts, host_check),
       cmocka_unit_test_teardown(test_texts_together, host_check),
       cmocka_unit_test_teardown(test_es, host_check),
   };

@@ -13,11 +13,13 @@
 #include "host.h"
 #include "state.h"
 
-enum { WIDTH = 96, HEIGHT = 72, PIXELS = WIDTH * HEIGHT, LIGHTS = 4, VIEWS = 3, IMAGES = LIGHTS * VIEWS };
+enum { WIDTH = 96, HEIGHT = 72, PIXELS = WIDTH * HEIGHT, LIGHTS = 6, VIEWS = 3, IMAGES = LIGHTS * VIEWS };
 
 /* One light for each way the library may look back, and techniques that draw once and often. */
-static const char *const techniques[LIGHTS] = {"pcss", "pcf:filter=bicubic", "average:samples=4", "smoothies"};
-static const pn_fit fits[LIGHTS] = {PN_FIT_CASTERS, PN_FIT_VISIBLE, PN_FIT_FRUSTUM, PN_FIT_VISIBLE};
+static const char *const techniques[LIGHTS] = {"pcss",      "pcf:filter=bicubic", "average:samples=4",
+                                               "smoothies", "ssm:layers=2",       "backprojection:layers=3,focus=60"};
+static const pn_fit fits[LIGHTS] = {PN_FIT_CASTERS, PN_FIT_VISIBLE, PN_FIT_FRUSTUM,
+                                    PN_FIT_VISIBLE, PN_FIT_CASTERS, PN_FIT_CASTERS};
 /* A texture, a multisampled texture, a multisampled renderbuffer. */
 static const int cameras[VIEWS] = {1, 12, 15};
 
@@ -27,7 +29,7 @@ static camera views[VIEWS];
 static depth_target targets[VIEWS];
 static pn_receiver *receivers[VIEWS];
 static pn_light *lights[LIGHTS];
-static GLuint into;
+static GLuint into, four, companions[2];
 static pn_state_mode mode;
 static int counted;
 
@@ -53,6 +55,14 @@ static pn_result end(int i) {
 }
 
 static pn_result prepare(int i) { return pn_prepare(h.context, techniques[i], NULL); }
+
+/* Views of every kind, before they exist. */
+static pn_result prepare_like(int i) {
+  pn_receiver_desc like = {.scale = 1 + i % 2, .width = WIDTH, .height = HEIGHT};
+  like.normal_texture = i & 2 ? 1 : 0;
+  like.mask_texture = i == 3 ? 1 : 0;
+  return pn_prepare(h.context, "pcss", &like);
+}
 
 static pn_result make_casters(int i) {
   (void)i;
@@ -111,6 +121,16 @@ static pn_result see_into(int i) {
   return pn_visibility_into(lights[0], receivers[0], &(pn_target){into, 1, 0});
 }
 
+/* Channel by channel, from both scales. */
+static pn_result see_channel(int i) {
+  return pn_visibility_into(lights[i], receivers[i % 2 ? VIEWS - 1 : 0], &(pn_target){four, 0, 1 << i % 4});
+}
+
+static pn_result see_nowhere(int i) {
+  pn_result result = pn_visibility_into(lights[i], receivers[0], &(pn_target){targets[0].depth, 0, 0});
+  return result == PN_ERROR_ARGUMENT ? PN_OK : PN_ERROR_UNSUPPORTED;
+}
+
 /* A light whose casters are all left out: results are filled without a map. */
 static pn_result see_nothing(int i) {
   pn_result result = pn_maps_update(lights[i], h.casters, 0, NULL, 0);
@@ -128,6 +148,58 @@ static pn_result look(int i) {
   pn_result result = pn_result_image(lights[i], receivers[0], &image);
   if (result == PN_OK) result = pn_light_maps(lights[i], &maps);
   return result == PN_OK ? pn_context_info(h.context, &info) : result;
+}
+
+static pn_result soft_map(int i) {
+  (void)i;
+  pn_soft_shadow_map map;
+  return pn_soft_shadow_map_image(lights[4], receivers[0], &map);
+}
+
+/* Normals and a mask beside the depth, and one that is refused. */
+static pn_result set_companions(int i) {
+  pn_receiver_desc desc = host_receiver_desc(&views[0], &targets[0]);
+  desc.normal_texture = companions[0], desc.mask_texture = companions[1];
+  desc.normal_encoding = PN_NORMAL_UNSIGNED;
+  pn_result result = pn_receiver_set(receivers[0], &desc);
+  if (result == PN_OK) result = pn_visibility(lights[i], receivers[0]);
+  desc.normal_texture = targets[0].depth;
+  if (pn_receiver_set(receivers[0], &desc) == PN_OK) return PN_ERROR_UNSUPPORTED;
+  desc.normal_texture = desc.mask_texture = 0;
+  if (result == PN_OK) result = pn_receiver_set(receivers[0], &desc);
+  return result == PN_OK ? see(i) : result;
+}
+
+/* There and back: another technique, other parameters, debug images. */
+static pn_result change(int i) {
+  pn_result result = pn_debug(h.context, PN_DEBUG_SEARCH | PN_DEBUG_BOUND);
+  if (result == PN_OK) result = pn_light_technique(lights[i], techniques[(i + 1) % LIGHTS], NULL, 0);
+  if (result == PN_OK) result = update(i);
+  if (result == PN_OK) result = see(i);
+  if (result == PN_OK) result = pn_debug(h.context, 0);
+  if (result == PN_OK) result = pn_light_technique(lights[i], techniques[i], NULL, 0);
+  if (result == PN_OK) result = update(i);
+  for (int k = 0; k < VIEWS && result == PN_OK; k++) result = pn_visibility(lights[i], receivers[k]);
+  return result;
+}
+
+static pn_result move_instance(int i) {
+  pn_instance another;
+  const float *place = h.world.meshes[SCENE_BOX].place;
+  pn_result result = pn_instance_add(h.casters, h.meshes[SCENE_BOX], place, i, &another);
+  if (result == PN_OK) result = pn_instance_move(h.casters, another, place);
+  return result == PN_OK ? pn_instance_remove(h.casters, another) : result;
+}
+
+static pn_result reload(int i) {
+  pn_result result = pn_reload_shaders(h.context);
+  return result == PN_OK ? see(i) : result;
+}
+
+static pn_result ask(int i) {
+  const char *name, *help;
+  int in_use;
+  return pn_feature(h.context, i, &name, &in_use, &help) ? PN_OK : PN_ERROR_ARGUMENT;
 }
 
 static pn_result times(int i) {
@@ -166,6 +238,7 @@ typedef struct {
 static const step creation[] = {{"pn_context_create", make_context, 1}, {"pn_state_begin", begin, 1}};
 static const step frame[] = {
     {"pn_prepare", prepare, LIGHTS},
+    {"pn_prepare with a view", prepare_like, 4},
     {"pn_casters_create", make_casters, 1},
     {"pn_mesh_add", add_mesh, SCENE_MESHES},
     {"pn_mesh_moved", move_mesh, 1},
@@ -175,9 +248,17 @@ static const step frame[] = {
     {"pn_maps_update", update, LIGHTS},
     {"pn_visibility", see, IMAGES},
     {"pn_visibility_into", see_into, 1},
+    {"pn_visibility_into, channels", see_channel, LIGHTS},
+    {"pn_visibility_into, refused", see_nowhere, LIGHTS},
+    {"pn_soft_shadow_map_image", soft_map, 1},
+    {"normals and mask", set_companions, 2},
+    {"pn_light_technique", change, 3},
+    {"pn_instance_move", move_instance, 2},
+    {"pn_feature", ask, 2},
     {"pn_debug_image", look, LIGHTS},
     {"pn_times", times, LIGHTS},
     {"pn_glsl", text, 1},
+    {"pn_reload_shaders", reload, 1},
 };
 static const step closing[] = {{"pn_state_end", end, 1}};
 static const step destruction[] = {{"pn_light_destroy", destroy_some, 1}, {"pn_context_destroy", destroy, 1}};
@@ -415,9 +496,7 @@ static int setup(void **state) {
   if (!host_open(&h)) exit(77);
   odd_open(&odd);
   for (int i = 0; i < VIEWS; i++) {
-    views[i] = camera_at(cameras[i]);
-    views[i].width = views[i].target_width = WIDTH;
-    views[i].height = views[i].target_height = HEIGHT;
+    views[i] = camera_sized(cameras[i], WIDTH, HEIGHT);
     if (!target_open(&targets[i], &views[i])) return -1;
     renderer_depth(&h.draw, &h.world, &views[i], &targets[i]);
   }
@@ -425,6 +504,8 @@ static int setup(void **state) {
   gl.BindTexture(GL_TEXTURE_2D_ARRAY, into);
   gl.TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R32F, WIDTH, HEIGHT, 2, 0, GL_RED, GL_FLOAT, NULL);
   gl.BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+  four = make_texture(GL_RGBA8, WIDTH, HEIGHT);
+  for (int i = 0; i < 2; i++) companions[i] = make_texture(GL_RGBA8, WIDTH, HEIGHT);
   unset_odd();
   state_read(&defaults);
   return gl_errors();
@@ -434,6 +515,8 @@ static int teardown(void **state) {
   (void)state;
   for (int i = 0; i < VIEWS; i++) target_close(&targets[i]);
   gl.DeleteTextures(1, &into);
+  gl.DeleteTextures(1, &four);
+  gl.DeleteTextures(2, companions);
   odd_close(&odd);
   host_close(&h);
   return 0;

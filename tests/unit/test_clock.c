@@ -4,6 +4,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "light.h"
 #include "stage.h"
 
 enum { SIZE = 256, CAPACITY = 16 };
@@ -63,6 +64,29 @@ static void test_off_at_first(void **state) {
   bench_close(&b);
 }
 
+/* The best share of a frame's wall time that its stages add up to. */
+static double best_share(bench *b, int frames) {
+  double best = 0;
+  for (int i = 0; i < frames; i++) {
+    pn_time times[CAPACITY];
+    glFinish();
+    double start = now();
+    frame(b);
+    glFinish();
+    double wall = now() - start, sum = 0;
+    int count = pn_times(b->s.light, times, CAPACITY, 0);
+    assert_in_range(count, 3, CAPACITY);
+    for (int k = 0; k < count; k++) {
+      assert_true(times[k].milliseconds >= 0);
+      for (int j = 0; j < k; j++) assert_string_not_equal(times[j].stage, times[k].stage);
+      sum += times[k].milliseconds;
+    }
+    assert_true(sum > 0 && sum <= wall);
+    best = fmax(best, sum / wall);
+  }
+  return best;
+}
+
 /* On software GL every stage ends in glFinish: stages are positive, lie one after the other inside the calls, and
  * together they are all of the calls but for state saving and the like. How much that is depends on the machine's load,
  * so the best of some frames must be near: half would already be a wrong clock, not a slow day. */
@@ -78,25 +102,7 @@ static void test_sum(void **state) {
   }
   assert_ok(pn_timing(b.s.context, 1));
   frame(&b); /* compiles */
-  double best = 0;
-  for (int i = 0; i < 8; i++) {
-    pn_time times[CAPACITY];
-    glFinish();
-    double start = now();
-    frame(&b);
-    glFinish();
-    double wall = now() - start, sum = 0;
-    int count = pn_times(b.s.light, times, CAPACITY, 0);
-    assert_in_range(count, 3, CAPACITY);
-    for (int k = 0; k < count; k++) {
-      assert_true(times[k].milliseconds >= 0);
-      for (int j = 0; j < k; j++) assert_string_not_equal(times[j].stage, times[k].stage);
-      sum += times[k].milliseconds;
-    }
-    assert_true(sum > 0 && sum <= wall);
-    best = fmax(best, sum / wall);
-  }
-  assert_true(best > 0.5);
+  assert_true(best_share(&b, 8) > 0.5);
   bench_close(&b);
 }
 
@@ -127,6 +133,68 @@ static void test_stages(void **state) {
   bench_close(&b);
 }
 
+/* ---- long frames ------------------------------------------------------------------------------------------------- */
+
+/* Both sides, on eight layers of receivers, from a map with more texels than one list of micropatches takes: two marks
+ * a list. */
+static const char long_frame[] = "ssm:layers=8,sides=both,size=64";
+enum { LONG_MAP = 1040 };
+
+static int marks_of(const bench *b) {
+  const pni_pair *pair = pni_pair_find(&b->s.light->object, &b->s.receiver->object);
+  assert_non_null(pair);
+  return pair->clock.frames[pair->clock.current].count;
+}
+
+/* None is left out, however many marks a frame has, and each stage is told once. */
+static void check_stages(const bench *b) {
+  static const char *const stages[] = {"fit",     "depth_map",  "range",     "receiver_map",
+                                       "extents", "accumulate", "visibility"};
+  enum { STAGES = sizeof stages / sizeof *stages };
+  pn_time times[CAPACITY];
+  int count = pn_times(b->s.light, times, CAPACITY, 1);
+  assert_int_equal(count, STAGES);
+  for (int k = 0; k < STAGES; k++) assert_true(has_stage(times, count, stages[k]));
+  assert_true(marks_of(b) > 48);
+}
+
+static void test_long_frame(void **state) {
+  (void)state;
+  bench b;
+  pn_info info;
+  bench_open(&b);
+  assert_ok(pn_light_technique(b.s.light, long_frame, NULL, 0));
+  b.light.map_width = b.light.map_height = LONG_MAP;
+  assert_ok(pn_light_set(b.s.light, &b.light));
+  assert_ok(pn_timing(b.s.context, 1));
+  frame(&b);
+  check_stages(&b);
+  assert_ok(pn_context_info(b.s.context, &info));
+  if (info.software) assert_true(best_share(&b, 1) > 0.5);
+  else frame(&b);
+  check_stages(&b);
+  bench_close(&b);
+}
+
+/* A short frame after a long one tells of itself alone. */
+static void test_short_after_long(void **state) {
+  (void)state;
+  bench b;
+  pn_time times[CAPACITY];
+  bench_open(&b);
+  assert_ok(pn_timing(b.s.context, 1));
+  assert_ok(pn_light_technique(b.s.light, "ssm", NULL, 0));
+  frame(&b);
+  assert_ok(pn_light_technique(b.s.light, "hard", NULL, 0));
+  frame(&b);
+  int count = pn_times(b.s.light, times, CAPACITY, 1);
+  assert_int_equal(count, 3); /* fit, depth_map, visibility */
+  assert_false(has_stage(times, count, "accumulate"));
+  bench_close(&b);
+}
+
+/* ---- the host's queries ------------------------------------------------------------------------------------------ */
+
 /* Hosts may be in the middle of a query of their own. */
 static void test_inside_a_query(void **state) {
   (void)state;
@@ -145,7 +213,8 @@ static void test_inside_a_query(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_off_at_first), cmocka_unit_test(test_sum),
-                                     cmocka_unit_test(test_stages), cmocka_unit_test(test_inside_a_query)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_off_at_first),     cmocka_unit_test(test_sum),
+                                     cmocka_unit_test(test_stages),           cmocka_unit_test(test_long_frame),
+                                     cmocka_unit_test(test_short_after_long), cmocka_unit_test(test_inside_a_query)};
   return GL_RUN("clock", tests);
 }

@@ -24,7 +24,7 @@ static void preset(int choice, double *values) {
 }
 
 /* It draws its maps itself, batch by batch; pn_maps_update only finds out whether anything casts, and has the host
- * draw. */
+ * draw: as many maps as there are samples, so that with another number it has to again. */
 static void want(const double *values, pni_maps_want *out) { *out = (pni_maps_want){.variant = (int)values[SAMPLES]}; }
 
 /* Radical inverse in base 2. */
