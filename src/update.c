@@ -96,18 +96,44 @@ static pn_result update_technique(pn_light *light) {
   return result;
 }
 
-static pn_result update_maps(pn_light *light, pn_casters *casters, pn_receiver *const *visible, int visible_count) {
-  pn_result result = pni_gpu_check_lost(pni_light_gpu(light));
-  if (result == PN_OK) result = find_frusta(light, visible, visible_count);
+static pn_result fit_to_view(pn_light *light, const pn_casters *casters, pn_receiver *const *visible, int visible_count,
+                             const pni_maps_want *want) {
+  pn_result result = find_frusta(light, visible, visible_count);
   if (result != PN_OK) return result;
+  fit_light(light, casters, want);
+  if (light->desc.fit != PN_FIT_VISIBLE || !light->has_visible || light->maps.fit.empty) return PN_OK;
+  result = find_surfaces(light, visible, visible_count);
+  if (result == PN_OK) fit_light(light, casters, want);
+  return result;
+}
+
+/* Where the maps are to lie. Nothing is drawn yet: on failure the light and its maps stay as they were. */
+static pn_result place_maps(pn_light *light, const pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
+                            int visible_count, const pni_maps_want *want) {
+  pni_fit_result fit = light->maps.fit;
+  pni_region region = light->visible;
+  bool has_visible = light->has_visible;
+  uint32_t groups_before = light->groups;
+  light->groups = groups;
+  pn_result result = fit_to_view(light, casters, visible, visible_count, want);
+  if (result == PN_OK) {
+    light->casters = casters->object.serial;
+    return PN_OK;
+  }
+  light->maps.fit = fit;
+  light->visible = region;
+  light->has_visible = has_visible;
+  light->groups = groups_before;
+  return result;
+}
+
+static pn_result update_maps(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
+                             int visible_count) {
   pni_maps_want want;
   light->technique->want(light->values, &want);
-  fit_light(light, casters, &want);
-  if (light->desc.fit == PN_FIT_VISIBLE && light->has_visible && !light->maps.fit.empty) {
-    result = find_surfaces(light, visible, visible_count);
-    if (result != PN_OK) return result;
-    fit_light(light, casters, &want);
-  }
+  pn_result result = pni_gpu_check_lost(pni_light_gpu(light));
+  if (result == PN_OK) result = place_maps(light, casters, groups, visible, visible_count, &want);
+  if (result != PN_OK) return result;
   if (!light->maps.fit.empty) result = draw_maps(light, casters, &want);
   if (result == PN_OK) result = update_technique(light);
   light->maps.ready = result == PN_OK;
@@ -127,11 +153,9 @@ pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, 
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
                     "pn_maps_update: casters or a receiver of another context");
   if (!light->set) return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_LIGHT_UNSET, "pn_light_set comes first");
-  light->casters = casters->object.serial;
-  light->groups = groups;
   pni_enter(light->object.context);
   pni_clock_start(gpu, &light->clock);
-  pn_result result = update_maps(light, casters, visible, visible_count);
+  pn_result result = update_maps(light, casters, groups, visible, visible_count);
   pni_clock_end(gpu, &light->clock);
   return pni_leave(light->object.context, result);
 }

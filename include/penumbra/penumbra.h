@@ -491,7 +491,7 @@ PN_API pn_result pn_prepare(pn_context *context, const char *spec, const pn_rece
  * next call; the casters may change or go meanwhile, but for the technique `average` (docs/techniques/average.md).
  * Warnings: LIGHT_ANGLE, CASTER_MESHES.
  * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (LIGHT_UNSET, RECEIVER_UNSET), UNSUPPORTED, OUT_OF_MEMORY, SHADER,
- * CONTEXT_LOST. A failure may leave the light without maps: call it again before the next pn_visibility. */
+ * CONTEXT_LOST. ARGUMENT and NOT_READY leave the maps as they were; others may leave none. */
 PN_API pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
                                 int visible_count);
 

@@ -122,6 +122,34 @@ static void test_light(void **state) {
   pn_light_destroy(&light);
 }
 
+/* An update that fails before it draws leaves the maps of the last one, and where they lie. */
+static void test_failed_update(void **state) {
+  (void)state;
+  pn_light_desc desc = host_light_desc();
+  pn_light *light = NULL;
+  pn_receiver *unset = NULL, *seen[] = {v.receiver, NULL};
+  pn_maps_info first, then;
+  desc.map_width = 64;
+  desc.fit = PN_FIT_VISIBLE;
+  assert_int_equal(host_light(&h, &desc, "bitmask", &light), PN_OK);
+  assert_int_equal(pn_receiver_create(h.context, &unset), PN_OK);
+  seen[1] = unset;
+  assert_int_equal(pn_maps_update(light, h.casters, PN_GROUPS_ALL, seen, 1), PN_OK);
+  assert_int_equal(pn_light_maps(light, &first), PN_OK);
+  assert_int_equal(pn_visibility(light, v.receiver), PN_OK);
+  float *before = host_result(light, v.receiver);
+  assert_int_equal(pn_maps_update(light, h.casters, 2, seen, 2), PN_ERROR_NOT_READY);
+  assert_int_equal(pn_light_maps(light, &then), PN_OK);
+  assert_memory_equal(&first.s0, &then.s0, 6 * sizeof first.s0); /* s0 to w_far */
+  assert_int_equal(pn_visibility(light, v.receiver), PN_OK);
+  float *after = host_result(light, v.receiver);
+  assert_memory_equal(before, after, PIXELS * sizeof *before);
+  assert_true(dark_pixels(after, WIDTH, HEIGHT) > 100);
+  free(before), free(after);
+  pn_receiver_destroy(&unset);
+  pn_light_destroy(&light);
+}
+
 static int setup(void **state) {
   (void)state;
   if (!host_open(&h)) exit(77);
@@ -143,6 +171,7 @@ int main(void) {
       cmocka_unit_test_teardown(test_parameters, host_check),
       cmocka_unit_test_teardown(test_refused, host_check),
       cmocka_unit_test_teardown(test_light, host_check),
+      cmocka_unit_test_teardown(test_failed_update, host_check),
   };
   return cmocka_run_group_tests_name("stale", tests, setup, teardown);
 }
