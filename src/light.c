@@ -110,6 +110,7 @@ pn_result pn_light_set(pn_light *light, const pn_light_desc *desc) {
   pn_light_desc filled = *desc;
   if (!filled.map_width) filled.map_width = 512;
   if (!filled.map_height) filled.map_height = filled.map_width;
+  if (filled.fit != PN_FIT_GIVEN) memset(filled.fit_bounds, 0, sizeof filled.fit_bounds); /* not read */
   if (light->set && same_light(&light->desc, &filled)) return PN_OK;
   light->desc = filled;
   light->frame = frame;
@@ -130,7 +131,7 @@ static bool same_values(const double *a, const double *b) {
 
 pn_result pn_light_technique(pn_light *light, const char *spec, char *why, size_t why_size) {
   if (!light) return PN_ERROR_ARGUMENT;
-  if (why && why_size) why[0] = 0;
+  if (why && why_size) snprintf(why, why_size, "%s", spec ? "" : "the technique's spec is NULL");
   if (!spec)
     return pni_fail(pni_light_gpu(light), PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
                     "pn_light_technique: spec is NULL");

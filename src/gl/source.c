@@ -37,7 +37,7 @@ static const char *source(pni_gpu *gpu, const char *path, pni_text *storage) {
 
 /* ---- includes ---------------------------------------------------------------------------------------------------- */
 
-enum { INCLUDES_MAX = 32 };
+enum { INCLUDES_MAX = 64 };
 
 typedef struct {
   pni_gpu *gpu;
@@ -46,10 +46,11 @@ typedef struct {
   int seen_count;
 } assembly;
 
+/* There is room for it: add_file saw to that. */
 static bool first_time(assembly *a, const char *path) {
   for (int i = 0; i < a->seen_count; i++)
     if (!strcmp(a->seen[i], path)) return false;
-  if (a->seen_count < INCLUDES_MAX) snprintf(a->seen[a->seen_count++], sizeof a->seen[0], "%s", path);
+  snprintf(a->seen[a->seen_count++], sizeof a->seen[0], "%s", path);
   return true;
 }
 
@@ -66,6 +67,8 @@ static bool include_path(const char *line, size_t length, char path[96]) {
 }
 
 static pn_result add_file(assembly *a, const char *path, const char *from) {
+  if (a->seen_count == INCLUDES_MAX)
+    return pni_fail(a->gpu, PN_ERROR_SHADER, PN_MESSAGE_SHADER_MISSING, "a shader of more than %d files", INCLUDES_MAX);
   if (!first_time(a, path)) return PN_OK;
   pni_text storage = {.gpu = a->gpu};
   const char *text = source(a->gpu, path, &storage);
