@@ -147,7 +147,7 @@ typedef struct {
 #ifdef NDEBUG
 #define GL(gpu, name) (*(gpu)->gl.name)
 #else
-#define GL(gpu, name) (*((gpu)->calls += 1, (gpu)->gl.name))
+#define GL(gpu, name) (*(pni_count_call(gpu), (gpu)->gl.name))
 #endif
 
 #endif
