@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* asprintf */
 #include "cli/claims.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +37,8 @@ static int add(struct claims *claims, const char *what, const char *path, int wr
     claim->number = info.st_ino;
   }
   claims->count++;
-  if (!claim->what || !claim->target) return memory_error();
+  if (!claim->what || (!claim->target && errno == ENOMEM)) return memory_error();
+  if (!claim->target) return input_error("%s: %s: %s", what, path, strerror(errno));
   for (int i = 0; writes && i < claims->count - 1; i++)
     if (is_same(&items[i], claim)) return input_error("%s would overwrite %s: both are %s", what, items[i].what, path);
   return STATUS_OK;
@@ -59,6 +61,8 @@ int claim_saved(struct claims *claims, const char *folder, const char *name) {
 }
 
 int claim_options(struct claims *claims, const struct options *o) {
+  if (o->json && o->html && strcmp(o->json, "-") == 0 && strcmp(o->html, "-") == 0)
+    return input_error("--json and --html cannot both be standard output");
   int status = o->positional_count ? claim_read(claims, "the model", o->positionals[0]) : STATUS_OK;
   if (!status) status = claim_read(claims, "the file of --setup", o->setup_file);
   if (!status) status = claim_write(claims, "--output", o->output);

@@ -100,7 +100,11 @@ void options_free(struct options *o) {
   o->techniques = o->positionals = NULL;
 }
 
-FILE *options_people(const struct options *o) { return o->json && strcmp(o->json, "-") == 0 ? stderr : stdout; }
+static int is_standard_output(const char *path) { return path && strcmp(path, "-") == 0; }
+
+FILE *options_people(const struct options *o) {
+  return is_standard_output(o->json) || is_standard_output(o->html) ? stderr : stdout;
+}
 
 void options_print(FILE *file, enum command command) {
   for (int i = 0; i < OPTION_COUNT; i++) {

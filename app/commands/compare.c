@@ -1,5 +1,6 @@
 /* penumbra compare: several techniques against the reference. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/message.h"
 #include "commands/commands.h"
@@ -108,7 +109,7 @@ static int write_page(const struct comparison *c) {
     return report_problem(made, "--html", c->options->html);
   }
   status = output_commit(&output);
-  if (!status) fprintf(c->people, "%s\n", c->options->html);
+  if (!status && strcmp(c->options->html, "-")) fprintf(c->people, "%s\n", c->options->html);
   return status;
 }
 

@@ -1,6 +1,7 @@
 #include "commands/outputs.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/message.h"
 #include "files/json.h"
@@ -20,6 +21,6 @@ int claim_technique(struct claims *claims, const char *folder, int index, const 
 
 int write_result(const struct options *o, cJSON *json) {
   int status = json_write(o->json, json);
-  if (!status && options_people(o) == stdout) puts(o->json);
+  if (!status && strcmp(o->json, "-")) fprintf(options_people(o), "%s\n", o->json);
   return status;
 }

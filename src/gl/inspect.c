@@ -121,12 +121,18 @@ void pni_inspect_size(pni_gpu *gpu, pn_gl texture, bool multisample, int *width,
   pni_bind_scratch(gpu, target, 0);
 }
 
-void pni_inspect_red(pni_gpu *gpu, pn_gl texture, int *bits, bool *is_float) {
+pni_color_source pni_inspect_color(pni_gpu *gpu, pn_gl texture) {
+  static const GLenum sizes[3] = {GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE, GL_TEXTURE_BLUE_SIZE};
+  pni_color_source out = {0};
   pni_ready(gpu);
   pni_bind_scratch(gpu, GL_TEXTURE_2D, texture);
-  *bits = level_parameter(gpu, GL_TEXTURE_2D, GL_TEXTURE_RED_SIZE);
-  *is_float = level_parameter(gpu, GL_TEXTURE_2D, GL_TEXTURE_RED_TYPE) == GL_FLOAT;
+  int type = level_parameter(gpu, GL_TEXTURE_2D, GL_TEXTURE_RED_TYPE);
+  if (type != GL_INT && type != GL_UNSIGNED_INT) out.bits = level_parameter(gpu, GL_TEXTURE_2D, sizes[0]);
+  while (out.bits > 0 && out.channels < 3 && level_parameter(gpu, GL_TEXTURE_2D, sizes[out.channels]) > 0)
+    out.channels++;
+  out.is_float = type == GL_FLOAT;
   pni_bind_scratch(gpu, GL_TEXTURE_2D, 0);
+  return out;
 }
 
 /* Of what is attached for drawing; integers are none. */

@@ -26,8 +26,13 @@ pn_result pni_copy_depth(pni_gpu *gpu, pn_gl framebuffer, int x, int y, const pn
 
 /* Size of a 2D texture, or of a multisample one. */
 void pni_inspect_size(pni_gpu *gpu, pn_gl texture, bool multisample, int *width, int *height);
-/* Bits of a 2D texture's red channel, and whether they are a float's. */
-void pni_inspect_red(pni_gpu *gpu, pn_gl texture, int *bits, bool *is_float);
+/* Colours that a sampler reads as floats. */
+typedef struct {
+  int bits, channels; /* of red, 0 where there is none or they are integers; that it has, from red on */
+  bool is_float;
+} pni_color_source;
+/* Of a 2D texture. */
+pni_color_source pni_inspect_color(pni_gpu *gpu, pn_gl texture);
 
 /* A texture that can be drawn to. */
 typedef struct {

@@ -99,17 +99,24 @@ static pn_result check_companion(pni_gpu *gpu, const pn_receiver_desc *d, pn_gl 
 /* Normals are colours. Half a step of a normalised integer on three axes; an octahedral map stretches it by at most
  * another factor. */
 static pn_result check_normals(pni_gpu *gpu, const pn_receiver_desc *d, float *error) {
-  int bits = 0;
-  bool is_float = false;
   *error = 0;
   if (!d->normal_texture) return PN_OK;
-  pni_inspect_red(gpu, d->normal_texture, &bits, &is_float);
-  if (bits <= 0)
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_NORMAL, "the normal texture has no colours");
-  float step = (float)(2.0 / (ldexp(1, bits) - 1));
-  if (is_float) *error = bits >= 32 ? 1e-6f : bits >= 16 ? 1e-3f : 1.6e-2f;
-  else *error = step * (d->normal_encoding >= PN_NORMAL_OCTAHEDRON ? 1.5f : 0.87f);
+  bool octahedron = d->normal_encoding >= PN_NORMAL_OCTAHEDRON;
+  pni_color_source color = pni_inspect_color(gpu, d->normal_texture);
+  if (color.channels < (octahedron ? 2 : 3))
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_NORMAL,
+                    "the normal texture has %d channels that are no integers, its encoding takes %d", color.channels,
+                    octahedron ? 2 : 3);
+  float step = (float)(2.0 / (ldexp(1, color.bits) - 1));
+  if (color.is_float) *error = color.bits >= 32 ? 1e-6f : color.bits >= 16 ? 1e-3f : 1.6e-2f;
+  else *error = step * (octahedron ? 1.5f : 0.87f);
   return PN_OK;
+}
+
+static pn_result check_mask(pni_gpu *gpu, const pn_receiver_desc *d) {
+  if (!d->mask_texture || pni_inspect_color(gpu, d->mask_texture).channels > 0) return PN_OK;
+  return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MASK,
+                  "the mask texture has no red, or integers, which no sampler of it reads");
 }
 
 /* ---- matrices ---------------------------------------------------------------------------------------------------- */
@@ -177,6 +184,7 @@ static pn_result set_receiver(pn_receiver *receiver, pn_receiver_desc d) {
   if (result == PN_OK) result = check_companion(gpu, &d, d.normal_texture, PN_MESSAGE_RECEIVER_NORMAL, "normal");
   if (result == PN_OK) result = check_companion(gpu, &d, d.mask_texture, PN_MESSAGE_RECEIVER_MASK, "mask");
   if (result == PN_OK) result = check_normals(gpu, &d, &normal_error);
+  if (result == PN_OK) result = check_mask(gpu, &d);
   if (result == PN_OK && !invert_view(&d, source.at, &scene_from_clip, &scene_from_pixel))
     result = pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX, "projection times view has no inverse");
   if (result != PN_OK) return result;

@@ -141,6 +141,10 @@ rejected 2 '--json would overwrite the file of --setup' render $s --setup good.j
 rejected 2 '--json would overwrite --output' render $s -o new.png --json "$PWD/folder.png/../new.png"
 rejected 2 '--json would overwrite --output' render $s -o new.png --json later.png
 rejected 2 '--html would overwrite --output' compare $s -o new.png --html new.png
+rejected 2 '--json and --html cannot both be standard output' compare $s --json - --html -
+ln -s round.png about.png
+ln -s about.png round.png
+rejected 2 'Too many levels of symbolic links' render $s -o round.png
 rejected 2 'a buffer of --save-dir would overwrite --output' render $s -o none/mask.exr --save-dir none
 rejected 2 'a buffer of --save-dir would overwrite --json' compare $s --json none/reference.exr --save-dir none
 rejected 2 'the picture of hard would overwrite the picture of hard' render $s -t hard -t hard

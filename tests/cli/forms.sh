@@ -68,6 +68,8 @@ run 0 render builtin:boxes --frames 1 -t hard -o three.exr --setup one.json --fo
 cmp -s one.exr three.exr && fail "an option does not override --setup"
 run 0 render builtin:boxes $small -o x.png --json -
 grep -q '"schema":' out && ! grep -q 'ms a frame' out || fail "--json -: $(head -3 out)"
+run 0 compare builtin:boxes --size 40x30 --frames 1 --reference-samples 1 --html -
+head -1 out | grep -qi '<!doctype html' && tail -1 out | grep -q '</html>' || fail "--html -: $(head -3 out)"
 # What the contract alone names is enough: no target, no up.
 printf '{"light":{"type":"rectangle","center":[0,3,0],"direction":[0,-1,0],' >plain.json
 printf '"u":[1,0,0],"v":[0,0,-1],"size":[1,1]}}' >>plain.json

@@ -84,10 +84,12 @@ GLuint renderer_program(const char *text, const char *body) {
 
 GLuint make_texture(GLenum format, int width, int height) {
   int is_depth = format == GL_DEPTH_COMPONENT32F || format == GL_DEPTH_COMPONENT24 || format == GL_DEPTH_COMPONENT16;
+  int integer = format == GL_RGBA8UI;
   int stencil = format == GL_DEPTH24_STENCIL8 || format == GL_DEPTH32F_STENCIL8;
-  GLenum layout = is_depth ? GL_DEPTH_COMPONENT : stencil ? GL_DEPTH_STENCIL : GL_RGBA;
+  GLenum layout = is_depth ? GL_DEPTH_COMPONENT : stencil ? GL_DEPTH_STENCIL : integer ? GL_RGBA_INTEGER : GL_RGBA;
   GLenum type = format == GL_DEPTH24_STENCIL8    ? GL_UNSIGNED_INT_24_8
                 : format == GL_DEPTH32F_STENCIL8 ? GL_FLOAT_32_UNSIGNED_INT_24_8_REV
+                : integer                        ? GL_UNSIGNED_BYTE
                                                  : GL_FLOAT;
   GLuint name = 0;
   gl.GenTextures(1, &name);

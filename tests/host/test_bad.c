@@ -19,7 +19,7 @@ static camera view;
 static camera_view seen;
 static pn_light *light;
 static float *expected;
-static GLuint color, small_color, flat_depth, forward_program;
+static GLuint color, small_color, integers, red_only, flat_depth, forward_program;
 
 /* One line of a table: what must come back, and what to call with which case number. */
 typedef struct {
@@ -246,8 +246,11 @@ static pn_result bad_receiver(host *h, int k) {
   case 41: d.normal_texture = color, d.normal_encoding = (pn_normal_encoding)17; break;
   case 42: d.normal_texture = seen.target.depth; break;
   case 43: d.normal_texture = 99999; break;
+  case 44: d.normal_texture = integers; break;
+  case 45: d.normal_texture = red_only; break;
   case 50: d.mask_texture = small_color; break;
   case 51: d.mask_texture = 99999; break;
+  case 52: d.mask_texture = integers; break;
   case 60: d.scale = 3; break;
   case 61: d.scale = -1; break;
   case 62: d.scale = 8; break;
@@ -283,8 +286,11 @@ static void test_receivers(void **state) {
       {"normals' encoding", ARGUMENT, PN_MESSAGE_RECEIVER_NORMAL, bad_receiver, 41},
       {"depth as normals", ARGUMENT, PN_MESSAGE_RECEIVER_NORMAL, bad_receiver, 42},
       {"no such normals", ARGUMENT, PN_MESSAGE_RECEIVER_NORMAL, bad_receiver, 43},
+      {"integers as normals", ARGUMENT, PN_MESSAGE_RECEIVER_NORMAL, bad_receiver, 44},
+      {"one channel of normals", ARGUMENT, PN_MESSAGE_RECEIVER_NORMAL, bad_receiver, 45},
       {"mask of another size", ARGUMENT, PN_MESSAGE_RECEIVER_MASK, bad_receiver, 50},
       {"no such mask", ARGUMENT, PN_MESSAGE_RECEIVER_MASK, bad_receiver, 51},
+      {"integers as mask", ARGUMENT, PN_MESSAGE_RECEIVER_MASK, bad_receiver, 52},
       {"scale 3", ARGUMENT, PN_MESSAGE_RECEIVER_SCALE, bad_receiver, 60},
       {"scale -1", ARGUMENT, PN_MESSAGE_RECEIVER_SCALE, bad_receiver, 61},
       {"scale 8", ARGUMENT, PN_MESSAGE_RECEIVER_SCALE, bad_receiver, 62},
@@ -722,6 +728,8 @@ static int setup(void **state) {
   expected = host_visibility(h, light, &seen);
   color = make_texture(GL_RGBA8, WIDTH, HEIGHT);
   small_color = make_texture(GL_RGBA8, WIDTH / 2, HEIGHT);
+  integers = make_texture(GL_RGBA8UI, WIDTH, HEIGHT);
+  red_only = make_texture(GL_R8, WIDTH, HEIGHT);
   flat_depth = make_framebuffer(color, 0);
   forward_program =
       renderer_program(pn_glsl(h->context, "pcss", 330, 0),
@@ -737,6 +745,8 @@ static int teardown(void **state) {
   gl.DeleteFramebuffers(1, &flat_depth);
   gl.DeleteTextures(1, &color);
   gl.DeleteTextures(1, &small_color);
+  gl.DeleteTextures(1, &integers);
+  gl.DeleteTextures(1, &red_only);
   return host_teardown(state);
 }
 
