@@ -171,7 +171,7 @@ pn_result pn_light_maps(const pn_light *light, pn_maps_info *out) {
   *out = (pn_maps_info){
       .empty = maps->fit.empty,
       .tiles = maps->fit.tiles,
-      .layers = pni_want_layers(&maps->want),
+      .layers = maps->fit.empty ? 0 : pni_want_layers(&maps->want),
       .width = light->desc.map_width,
       .height = light->desc.map_height,
       .s0 = (float)b[0],

@@ -20,7 +20,7 @@
  *     keep them alive as long as a description holds them.
  *   - Functions return PN_OK or a negative pn_result; the reason, with a stable message id, goes to the context's log.
  *     A call that fails leaves the object as it was, unless it says what becomes of it. Nothing aborts, nothing is
- *     printed, no GL error is raised.
+ *     printed, no GL error is raised, as long as the host's objects live that a description holds.
  *   - The same input on the same device gives the same bits.
  *
  * Errors are listed as results, with the messages that tell them apart: "Errors: ARGUMENT (MESH_BOUNDS),
@@ -100,7 +100,7 @@ typedef enum {
   PN_MESSAGE_STATE_SCOPE,             /* pn_state_begin and pn_state_end do not pair up */
   PN_MESSAGE_MESH_POSITIONS,          /* no positions, or their offset, stride or count are impossible */
   PN_MESSAGE_MESH_INDICES,            /* index size not 0, 2 or 4, a count not divisible by 3, an index out of range */
-  PN_MESSAGE_MESH_TEXCOORDS,          /* an alpha texture without texture coordinates, or impossible spans */
+  PN_MESSAGE_MESH_TEXCOORDS,          /* alpha texture and texture coordinates come together; or impossible spans */
   PN_MESSAGE_MESH_ALPHA,              /* channel not 0..3, cutoff not in [0, 1] */
   PN_MESSAGE_MESH_BOUNDS,             /* bounds missing for a GL buffer, inverted, or not finite */
   /* warning: triangles with a coordinate that is not finite, or without area, dropped */
@@ -340,8 +340,8 @@ typedef enum {
 typedef struct {
   pn_gl depth_texture;     /* 2D or 2D multisample (sample 0 is read); or */
   pn_gl depth_framebuffer; /* a framebuffer whose depth is copied (renderbuffers; multisample: sample 0), with */
-  int use_framebuffer;     /* nonzero, since the default framebuffer is named 0 */
-  int x, y, width, height; /* the view inside it, pixels, GL's lower-left origin; both sizes 0 = all of a texture */
+  int use_framebuffer;     /* nonzero: that one, since the default framebuffer is named 0; else ignored */
+  int x, y, width, height; /* the view inside it, pixels, GL's lower-left origin; sizes 0: the rest of a texture */
   float view[16];          /* eye from scene */
   float projection[16];    /* clip from eye */
   int depth_zero_to_one;   /* nonzero: the projection maps to [0, 1] (glClipControl with GL_ZERO_TO_ONE) */
@@ -403,7 +403,8 @@ typedef struct {
   /* the rectangle's first axis; made perpendicular to direction. Zero: derived from up, see pn_light_frame */
   float axis_u[3];
   float half_u, half_v; /* rectangle: half extents, scene units. Sun: tangents of the angular radii */
-  float near_distance;  /* casters nearer than this are taken to be this far. 0: from the casters */
+  /* Casters nearer than this are taken to be this far; snapped down, as bounds are. 0: from the casters */
+  float near_distance;
   float range;          /* instances wholly beyond this distance cast nothing. 0: no limit */
   pn_gl texture;        /* radiance over the light: not yet, must be 0 */
   pn_fit fit;
@@ -423,9 +424,9 @@ PN_API void pn_light_destroy(pn_light **light);
  * UNSUPPORTED (LIGHT_TEXTURE). */
 PN_API pn_result pn_light_set(pn_light *light, const pn_light_desc *desc);
 
-/* The frame of a light that shines along direction: u = normalize(direction x up), v = u x direction; where up is
- * parallel to direction it becomes (0, 0, -1), then (1, 0, 0). direction_out is unit. Any output may be NULL.
- * Errors: ARGUMENT, without a message: direction NULL, zero or not finite. */
+/* The frame of a light that shines along direction: u = normalize(direction x up), v = u x direction; where up is NULL,
+ * not finite or parallel to direction it becomes (0, 0, -1), then (1, 0, 0). direction_out is unit. Any output may be
+ * NULL. Errors: ARGUMENT, without a message: direction NULL, zero or not finite. */
 PN_API pn_result pn_light_frame(const float direction[3], const float up[3], float direction_out[3], float u[3],
                                 float v[3]);
 
@@ -466,7 +467,7 @@ PN_API const pn_technique *pn_technique_find(const char *name);     /* NULL when
 PN_API pn_result pn_light_technique(pn_light *light, const char *spec, char *why, size_t why_size);
 
 /* Checks a spec without a light or a context. technique, values and why may be NULL; values has room for
- * parameter_count numbers. Errors: ARGUMENT, without a message: why says it. */
+ * parameter_count numbers; on failure both stay as they were. Errors: ARGUMENT, without a message: why says it. */
 PN_API pn_result pn_technique_parse(const char *spec, const pn_technique **technique, double *values, char *why,
                                     size_t why_size);
 
@@ -568,7 +569,7 @@ typedef struct {
   int width, height;  /* texels of each map */
   float s0, t0, s1, t1; /* bounds over all tiles in light map space (docs/space.md) */
   float w_near, w_far;
-  size_t gpu_memory;  /* bytes, of depth maps and ranges */
+  size_t gpu_memory;  /* bytes that depth maps and ranges hold, of an earlier update too where this one was empty */
 } pn_maps_info;
 PN_API pn_result pn_light_maps(const pn_light *light, pn_maps_info *out);
 
