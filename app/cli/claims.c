@@ -49,7 +49,7 @@ int claim_read(struct claims *claims, const char *what, const char *path) {
 }
 
 int claim_write(struct claims *claims, const char *what, const char *path) {
-  return !path || strcmp(path, "-") == 0 ? STATUS_OK : add(claims, what, path, 1);
+  return !path || output_is_standard(path) ? STATUS_OK : add(claims, what, path, 1);
 }
 
 int claim_saved(struct claims *claims, const char *folder, const char *name) {
@@ -61,7 +61,7 @@ int claim_saved(struct claims *claims, const char *folder, const char *name) {
 }
 
 int claim_options(struct claims *claims, const struct options *o) {
-  if (o->json && o->html && strcmp(o->json, "-") == 0 && strcmp(o->html, "-") == 0)
+  if (output_is_standard(o->json) && output_is_standard(o->html))
     return input_error("--json and --html cannot both be standard output");
   int status = o->positional_count ? claim_read(claims, "the model", o->positionals[0]) : STATUS_OK;
   if (!status) status = claim_read(claims, "the file of --setup", o->setup_file);

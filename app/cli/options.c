@@ -6,6 +6,7 @@
 #include "base/message.h"
 #include "base/names.h"
 #include "base/progress.h"
+#include "files/output.h"
 
 /* The option in the table, or an error that names the nearest. */
 static int find_long(enum command command, const char *name, size_t length, enum option *out) {
@@ -100,10 +101,8 @@ void options_free(struct options *o) {
   o->techniques = o->positionals = NULL;
 }
 
-static int is_standard_output(const char *path) { return path && strcmp(path, "-") == 0; }
-
 FILE *options_people(const struct options *o) {
-  return is_standard_output(o->json) || is_standard_output(o->html) ? stderr : stdout;
+  return output_is_standard(o->json) || output_is_standard(o->html) ? stderr : stdout;
 }
 
 void options_print(FILE *file, enum command command) {

@@ -1,6 +1,5 @@
 /* penumbra compare: several techniques against the reference. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/message.h"
 #include "commands/commands.h"
@@ -109,7 +108,7 @@ static int write_page(const struct comparison *c) {
     return report_problem(made, "--html", c->options->html);
   }
   status = output_commit(&output);
-  if (!status && strcmp(c->options->html, "-")) fprintf(c->people, "%s\n", c->options->html);
+  if (!status && !output_is_standard(c->options->html)) fprintf(c->people, "%s\n", c->options->html);
   return status;
 }
 

@@ -1,10 +1,10 @@
 #include "commands/outputs.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/message.h"
 #include "files/json.h"
+#include "files/output.h"
 
 int claim_technique(struct claims *claims, const char *folder, int index, const char *spec, unsigned insides) {
   char *file = save_name(index, spec);
@@ -21,6 +21,6 @@ int claim_technique(struct claims *claims, const char *folder, int index, const 
 
 int write_result(const struct options *o, cJSON *json) {
   int status = json_write(o->json, json);
-  if (!status && strcmp(o->json, "-")) fprintf(options_people(o), "%s\n", o->json);
+  if (!status && !output_is_standard(o->json)) fprintf(options_people(o), "%s\n", o->json);
   return status;
 }

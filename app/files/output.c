@@ -10,7 +10,7 @@
 #include "base/interrupt.h"
 #include "base/message.h"
 
-static int is_standard_output(const char *path) { return strcmp(path, "-") == 0; }
+int output_is_standard(const char *path) { return path && strcmp(path, "-") == 0; }
 
 static void forget(struct output *output) {
   if (output->temporary) interrupt_forget_file(output->temporary);
@@ -96,8 +96,8 @@ int output_open(struct output *output, const char *path) {
   output->path = strdup(path);
   if (!output->path) return memory_error();
   struct stat info;
-  int exists = !is_standard_output(path) && stat(path, &info) == 0;
-  if (is_standard_output(path)) {
+  int exists = !output_is_standard(path) && stat(path, &info) == 0;
+  if (output_is_standard(path)) {
     output->file = stdout;
     return STATUS_OK;
   }
@@ -150,7 +150,7 @@ int output_write_file(const char *path, const void *bytes, size_t size) {
 }
 
 int output_check(const char *path) {
-  if (is_standard_output(path)) return STATUS_OK;
+  if (output_is_standard(path)) return STATUS_OK;
   struct stat info;
   if (stat(path, &info) == 0) {
     if (S_ISDIR(info.st_mode)) return work_error("cannot write %s: it is a directory", path);

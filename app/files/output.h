@@ -15,6 +15,9 @@ struct output {
  * folder, exists yet; malloc'ed. NULL: out of memory, or links without end. */
 char *output_target(const char *path);
 
+/* Whether path, which may be NULL, is "-": standard output. */
+int output_is_standard(const char *path);
+
 /* Opens path for writing. "-" is standard output. On failure one line was printed and the exit status is returned. */
 int output_open(struct output *output, const char *path);
 
