@@ -9,6 +9,7 @@
 #include "base/progress.h"
 #include "reference/cache.h"
 #include "reference/reference.h"
+#include "scene/vector.h"
 
 /* What the tracer is given, and what has to be freed afterwards. */
 struct inputs {
@@ -54,13 +55,14 @@ static void fill_casters(struct inputs *in, const struct scene *scene) {
     if (!instance->casts) continue;
     struct reference_instance *to = &in->instances[in->casters.instance_count++];
     to->mesh = instance->mesh;
-    memcpy(to->scene_from_object, instance->scene_from_object, sizeof to->scene_from_object);
+    memcpy(to->scene_from_object, instance->placed, sizeof to->scene_from_object);
   }
 }
 
-static void fill_light(struct reference_light *to, const struct light *light) {
+/* Seen from where points and casters are. */
+static void fill_light(struct reference_light *to, const struct light *light, const double origin[3]) {
   to->shape = light->shape == PN_LIGHT_SUN ? REFERENCE_SUN : REFERENCE_RECTANGLE;
-  memcpy(to->center, light->center, sizeof to->center);
+  v3_sub(light->center, origin, to->center);
   memcpy(to->direction, light->direction, sizeof to->direction);
   memcpy(to->u, light->u, sizeof to->u);
   memcpy(to->v, light->v, sizeof to->v);
@@ -102,7 +104,7 @@ static int fill_inputs(struct inputs *in, const struct scene *scene, const struc
   if (!in->meshes || !in->instances || !in->textures || !in->errors) return memory_error();
   fill_textures(in, scene);
   fill_casters(in, scene);
-  fill_light(&in->light, &scene->setup.light);
+  fill_light(&in->light, &scene->setup.light, scene->origin);
   fill_points(in, g, view);
   return STATUS_OK;
 }

@@ -55,7 +55,7 @@ static int add_casters(struct client *client, const struct gpu_scene *gpu) {
     pn_instance ignored;
     if (!mesh->id) status = add_mesh(client, gpu, instance->mesh, mesh);
     if (!status)
-      status = client_check(client, pn_instance_add(client->casters, *mesh, instance->scene_from_object, 0, &ignored));
+      status = client_check(client, pn_instance_add(client->casters, *mesh, instance->placed, 0, &ignored));
   }
   free(known);
   return status;
@@ -85,6 +85,7 @@ int client_create(const struct gpu_scene *gpu, const struct gbuffer *g, pn_state
   if (!client) return memory_error();
   client->width = g->width;
   client->height = g->height;
+  memcpy(client->origin, gpu->scene->origin, sizeof client->origin);
   pn_context_desc desc = {.log = on_message, .user = client, .state = mode};
   desc.shader_directory = getenv("PENUMBRA_SHADERS");
   int status = client_check(client, pn_context_create(&desc, &client->context));
@@ -102,18 +103,19 @@ void client_free(struct client **client) {
   *client = NULL;
 }
 
-static void describe_light(const struct setup *setup, const struct light *light, pn_light_desc *desc) {
+static void describe_light(const struct client *client, const struct setup *setup, const struct light *light,
+                           pn_light_desc *desc) {
   memset(desc, 0, sizeof *desc);
   desc->shape = light->shape;
   for (int k = 0; k < 3; k++) {
-    desc->center[k] = (float)light->center[k];
+    desc->center[k] = (float)(light->center[k] - client->origin[k]);
     desc->direction[k] = (float)light->direction[k];
     desc->axis_u[k] = (float)light->u[k];
   }
   desc->half_u = (float)light->half[0];
   desc->half_v = (float)light->half[1];
   desc->fit = setup->fit;
-  for (int i = 0; i < 6; i++) desc->fit_bounds[i] = (float)setup->fit_bounds[i];
+  for (int i = 0; i < 6; i++) desc->fit_bounds[i] = (float)(setup->fit_bounds[i] - client->origin[i % 3]);
   desc->map_width = setup->map[0];
   desc->map_height = setup->map[1];
 }
@@ -121,7 +123,7 @@ static void describe_light(const struct setup *setup, const struct light *light,
 int client_light(struct client *client, const struct setup *setup, const struct light *light, const char *spec,
                  pn_light **out) {
   pn_light_desc desc;
-  describe_light(setup, light, &desc);
+  describe_light(client, setup, light, &desc);
   int status = client_check(client, pn_light_create(client->context, out));
   if (!status && spec) {
     char why[400] = "";

@@ -10,6 +10,7 @@ struct client {
   pn_casters *casters;
   pn_receiver *receiver;
   pn_receiver_desc view; /* the receiver's */
+  double origin[3];      /* the scene's: the library's scene space begins there */
   int width, height;
   char reason[400]; /* the library's latest error */
   int warming;      /* nonzero: warnings are not passed on, the real frame will repeat them */

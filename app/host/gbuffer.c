@@ -100,8 +100,9 @@ static int make_targets(struct gbuffer *g) {
   return STATUS_OK;
 }
 
-static void set_view(struct gbuffer *g, const struct camera *camera) {
-  double z[3], x[3], y[3], up[3] = {camera->up[0], camera->up[1], camera->up[2]};
+static void set_view(struct gbuffer *g, const struct camera *camera, const double origin[3]) {
+  double z[3], x[3], y[3], eye[3], up[3] = {camera->up[0], camera->up[1], camera->up[2]};
+  v3_sub(camera->position, origin, eye);
   v3_sub(camera->position, camera->target, z);
   v3_normalize(z);
   v3_normalize(up);
@@ -119,9 +120,9 @@ static void set_view(struct gbuffer *g, const struct camera *camera) {
     g->view[4 * k + 2] = (float)z[k];
     g->view[4 * k + 3] = 0;
   }
-  g->view[12] = (float)-v3_dot(x, camera->position);
-  g->view[13] = (float)-v3_dot(y, camera->position);
-  g->view[14] = (float)-v3_dot(z, camera->position);
+  g->view[12] = (float)-v3_dot(x, eye);
+  g->view[13] = (float)-v3_dot(y, eye);
+  g->view[14] = (float)-v3_dot(z, eye);
   g->view[15] = 1;
 }
 
@@ -152,7 +153,7 @@ static void set_instance(const struct gbuffer *g, const struct instance *instanc
   double p[16], v[16], m[16], pv[16], pvm[16], columns[3][3], cofactors[3][3];
   widen(g->projection, p);
   widen(g->view, v);
-  widen(instance->scene_from_object, m);
+  widen(instance->placed, m);
   multiply(p, v, pv);
   multiply(pv, m, pvm);
   float clip[16], normal[9];
@@ -227,10 +228,12 @@ static int draw_tightly(struct gbuffer *g, const struct gpu_scene *gpu) {
   for (int i = 0; i < scene->instance_count; i++) {
     const struct instance *instance = &scene->instances[i];
     const struct mesh *mesh = &scene->meshes[instance->mesh];
+    double placed[16];
+    widen(instance->placed, placed);
     for (int c = 0; c < 8; c++) {
       double p[3], q[3];
       for (int k = 0; k < 3; k++) p[k] = c >> k & 1 ? mesh->bounds_max[k] : mesh->bounds_min[k];
-      m4_point(instance->scene_from_object, p, q);
+      m4_point(placed, p, q);
       double distance = -(v3_dot(z, q) + g->view[14]);
       far = fmax(far, distance);
       near = fmin(near, distance);
@@ -267,7 +270,7 @@ int gbuffer_create(const struct gpu_scene *gpu, struct gbuffer **out) {
   int status = make_targets(g);
   if (!status) status = link_program(g);
   if (!status) {
-    set_view(g, &gpu->scene->setup.camera);
+    set_view(g, &gpu->scene->setup.camera, gpu->scene->origin);
     status = draw_tightly(g, gpu);
   }
   if (status) gbuffer_free(&g);

@@ -8,7 +8,7 @@ struct gbuffer {
   int width, height;
   pn_gl framebuffer, depth, normal, mask; /* D32F, RGBA32F (scene space, turned to the camera), R8 */
   pn_gl program;
-  float view[16], projection[16];
+  float view[16], projection[16]; /* the view of scene space seen from scene.origin */
 };
 
 /* Draws the scene from its camera; near and far planes lie close to what is visible. Exit status. */

@@ -62,7 +62,7 @@ void shade_unoccluded(const struct view *view, const struct light *light, float 
   for (size_t i = 0; i < (size_t)view->width * (size_t)view->height; i++) {
     double p[3], n[3];
     for (int k = 0; k < 3; k++) {
-      p[k] = view->position[3 * i + (size_t)k];
+      p[k] = view->origin[k] + view->position[3 * i + (size_t)k];
       n[k] = view->normal[3 * i + (size_t)k];
     }
     out[i] = isnan(p[0]) ? -1 : (float)(scale * light_form_factor(light, p, n));

@@ -41,11 +41,11 @@ static void unproject(const struct unprojection *u, double ndc_x, double ndc_y, 
 }
 
 /* Whether the surface faces every corner of the light, and lies in front of it. */
-static int faces_light(const struct light *light, double corners[4][3], const float position[3],
-                       const float normal[3]) {
+static int faces_light(const struct light *light, double corners[4][3], const double origin[3],
+                       const float position[3], const float normal[3]) {
   double p[3], n[3], d[3];
   for (int k = 0; k < 3; k++) {
-    p[k] = position[k];
+    p[k] = origin[k] + position[k];
     n[k] = normal[k];
   }
   if (light->shape == PN_LIGHT_RECTANGLE) {
@@ -108,7 +108,7 @@ static void fill(struct view *view, const struct gbuffer *g, const struct light 
       unproject(&u, 2 * (x + 0.5) / g->width - 1, 2 * (y + 0.5) / g->height - 1, raw->depth[from], p);
       memcpy(n, &raw->normal[3 * from], 3 * sizeof *n);
       view->receives[to] = raw->mask[from] != 0;
-      view->mask[to] = view->receives[to] && faces_light(light, corners, p, n) ? 1 : 0;
+      view->mask[to] = view->receives[to] && faces_light(light, corners, view->origin, p, n) ? 1 : 0;
     }
 }
 
@@ -119,6 +119,7 @@ int view_read(const struct gbuffer *g, const struct scene *scene, struct view **
   if (view) {
     view->width = g->width;
     view->height = g->height;
+    memcpy(view->origin, scene->origin, sizeof view->origin);
   }
   int ok = view && allocate(view) && read_raw(g, &raw);
   if (ok) fill(view, g, &scene->setup.light, &raw);

@@ -7,7 +7,8 @@
 /* The G-buffer on the CPU, top row first. Background: NaN positions and normals, mask and receives 0. */
 struct view {
   int width, height;
-  float *position;   /* 3 a pixel, scene space */
+  float *position;   /* 3 a pixel, scene space seen from origin */
+  double origin[3];  /* the scene's */
   float *normal;     /* 3 a pixel, unit, turned to the camera */
   uint8_t *receives; /* the surface receives */
   float *mask;       /* contract: 1 where the surface receives and faces all of the light, else 0 */

@@ -30,10 +30,27 @@ static const struct aiScene *read_model(const char *path) {
   return model;
 }
 
-/* Assimp's matrices are row-major. --up z turns the file's z to y, and its y to -z. Returns 0 where it is not a
- * finite affine matrix. */
-static int to_columns(const struct aiMatrix4x4 *m, int up_is_z, float out[16]) {
-  const float rows[3][4] = {{m->a1, m->a2, m->a3, m->a4}, {m->b1, m->b2, m->b3, m->b4}, {m->c1, m->c2, m->c3, m->c4}};
+/* From a node to the model, rows first as Assimp has them. In double, so that a node far away and a child that comes
+ * back from there cancel. */
+struct placement {
+  double row[4][4];
+};
+
+static struct placement place_node(const struct placement *parent, const struct aiMatrix4x4 *m) {
+  const float own[4][4] = {{m->a1, m->a2, m->a3, m->a4},
+                           {m->b1, m->b2, m->b3, m->b4},
+                           {m->c1, m->c2, m->c3, m->c4},
+                           {m->d1, m->d2, m->d3, m->d4}};
+  struct placement out = {{{0}}};
+  for (int r = 0; r < 4; r++)
+    for (int c = 0; c < 4; c++)
+      for (int k = 0; k < 4; k++) out.row[r][c] += parent->row[r][k] * (double)own[k][c];
+  return out;
+}
+
+/* --up z turns the file's z to y, and its y to -z. Returns 0 where it is not a finite affine matrix. */
+static int to_columns(const struct placement *p, int up_is_z, double out[16]) {
+  const double(*rows)[4] = p->row;
   for (int column = 0; column < 4; column++) {
     out[4 * column + 0] = rows[0][column];
     out[4 * column + 1] = up_is_z ? rows[2][column] : rows[1][column];
@@ -41,22 +58,22 @@ static int to_columns(const struct aiMatrix4x4 *m, int up_is_z, float out[16]) {
     out[4 * column + 3] = column == 3;
   }
   for (int i = 0; i < 16; i++)
-    if (!isfinite(out[i]) || fabsf(out[i]) > (float)COORDINATE_MAX) return 0;
-  return m->d1 == 0 && m->d2 == 0 && m->d3 == 0 && m->d4 == 1;
+    if (!isfinite(out[i]) || fabs(out[i]) > COORDINATE_MAX) return 0;
+  return rows[3][0] == 0 && rows[3][1] == 0 && rows[3][2] == 0 && rows[3][3] == 1;
 }
 
 /* A transform that flattens everything leaves no area to block light with. */
-static int flattens(const float m[16]) {
+static int flattens(const double m[16]) {
   double x = 0, y = 0, z = 0;
   for (int i = 0; i < 3; i++) {
-    x += (double)m[i] * m[i];
-    y += (double)m[4 + i] * m[4 + i];
-    z += (double)m[8 + i] * m[8 + i];
+    x += m[i] * m[i];
+    y += m[4 + i] * m[4 + i];
+    z += m[8 + i] * m[8 + i];
   }
   return (x == 0) + (y == 0) + (z == 0) > 1;
 }
 
-static void send_instance(struct importer *importer, unsigned mesh_index, const struct aiMatrix4x4 *transform,
+static void send_instance(struct importer *importer, unsigned mesh_index, const struct placement *transform,
                           int up_is_z) {
   if (mesh_index >= importer->model->mNumMeshes) return;
   struct record r = {.tag = RECORD_INSTANCE};
@@ -77,14 +94,13 @@ static void send_instance(struct importer *importer, unsigned mesh_index, const 
   importer->instance_count++;
 }
 
-static void send_node(struct importer *importer, const struct aiNode *node, struct aiMatrix4x4 parent, int up_is_z,
+static void send_node(struct importer *importer, const struct aiNode *node, const struct placement *parent, int up_is_z,
                       int depth) {
   if (depth > NODE_DEPTH_MAX) return;
-  struct aiMatrix4x4 transform = parent;
-  aiMultiplyMatrix4(&transform, &node->mTransformation);
+  struct placement transform = place_node(parent, &node->mTransformation);
   for (unsigned i = 0; i < node->mNumMeshes; i++) send_instance(importer, node->mMeshes[i], &transform, up_is_z);
   for (unsigned i = 0; i < node->mNumChildren; i++)
-    if (node->mChildren[i]) send_node(importer, node->mChildren[i], transform, up_is_z, depth + 1);
+    if (node->mChildren[i]) send_node(importer, node->mChildren[i], &transform, up_is_z, depth + 1);
 }
 
 /* "dropped 3 triangles without area, ...": everything that was left out, or "". */
@@ -154,9 +170,8 @@ void import_child(const char *path, int up_is_z, int fd) {
   if (!importer.sent) return;
   for (unsigned i = 0; i < count; i++) importer.sent[i] = MESH_NOT_SENT;
   send_materials(&importer);
-  struct aiMatrix4x4 identity;
-  aiIdentityMatrix4(&identity);
-  send_node(&importer, importer.model->mRootNode, identity, up_is_z, 0);
+  const struct placement identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+  send_node(&importer, importer.model->mRootNode, &identity, up_is_z, 0);
   char dropped[300];
   describe_dropped(&importer, dropped, sizeof dropped);
   if (importer.instance_count == 0) {

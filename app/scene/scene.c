@@ -44,26 +44,37 @@ static int grow(void **array, int count, size_t element) {
   return 0;
 }
 
+/* Where a mesh lies farther from 0 than it is wide, its coordinates are taken from its middle. Nothing is rounded: a
+ * float minus another that is between half and twice it is a float. */
+static void center_mesh(struct mesh *mesh) {
+  for (int k = 0; k < 3; k++) {
+    float low = FLT_MAX, high = -FLT_MAX;
+    float *p = mesh->positions + k;
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+      low = fminf(low, p[3 * i]);
+      high = fmaxf(high, p[3 * i]);
+    }
+    float middle = (float)(0.5 * ((double)low + high));
+    if ((double)high - low > 0.5 * fmax(fabs(low), fabs(high))) middle = 0;
+    for (size_t i = 0; middle != 0 && i < mesh->vertex_count; i++) p[3 * i] -= middle;
+    mesh->center[k] = middle;
+    mesh->bounds_min[k] = low - middle;
+    mesh->bounds_max[k] = high - middle;
+  }
+}
+
 int scene_add_mesh(struct scene *scene, struct mesh *mesh) {
   if (grow((void **)&scene->meshes, scene->mesh_count, sizeof *scene->meshes)) {
     mesh_free(mesh);
     return -1;
   }
-  for (int k = 0; k < 3; k++) {
-    mesh->bounds_min[k] = FLT_MAX;
-    mesh->bounds_max[k] = -FLT_MAX;
-  }
-  for (uint32_t i = 0; i < mesh->vertex_count; i++)
-    for (int k = 0; k < 3; k++) {
-      mesh->bounds_min[k] = fminf(mesh->bounds_min[k], mesh->positions[3 * (size_t)i + k]);
-      mesh->bounds_max[k] = fmaxf(mesh->bounds_max[k], mesh->positions[3 * (size_t)i + k]);
-    }
+  center_mesh(mesh);
   scene->meshes[scene->mesh_count] = *mesh;
   return scene->mesh_count++;
 }
 
-int scene_add_instance(struct scene *scene, int mesh, const float m[16], int casts, int receives) {
-  static const float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+int scene_add_instance(struct scene *scene, int mesh, const double m[16], int casts, int receives) {
+  static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   if (grow((void **)&scene->instances, scene->instance_count, sizeof *scene->instances)) return -1;
   struct instance *instance = &scene->instances[scene->instance_count];
   *instance = (struct instance){.mesh = mesh, .casts = casts, .receives = receives};
@@ -82,7 +93,7 @@ int scene_add_texture(struct scene *scene, const struct texture *texture) {
 
 void instance_bounds(const struct scene *scene, const struct instance *instance, double low[3], double high[3]) {
   const struct mesh *mesh = &scene->meshes[instance->mesh];
-  const float *m = instance->scene_from_object;
+  const double *m = instance->scene_from_object;
   int tight = mesh->vertex_count <= 1u << 22;
   for (int k = 0; k < 3; k++) {
     low[k] = DBL_MAX;
@@ -92,12 +103,32 @@ void instance_bounds(const struct scene *scene, const struct instance *instance,
   for (uint32_t i = 0; i < count; i++) {
     double p[3], q[3];
     for (int k = 0; k < 3; k++)
-      p[k] = tight ? mesh->positions[3 * (size_t)i + k] : (i >> k & 1 ? mesh->bounds_max[k] : mesh->bounds_min[k]);
+      p[k] = mesh->center[k] +
+             (tight ? mesh->positions[3 * (size_t)i + k] : (i >> k & 1 ? mesh->bounds_max[k] : mesh->bounds_min[k]));
     m4_point(m, p, q);
     for (int k = 0; k < 3; k++) {
       low[k] = fmin(low[k], q[k]);
       high[k] = fmax(high[k], q[k]);
     }
+  }
+}
+
+/* Composed in double: what is large in a transform and in a mesh's centre cancels before anything is rounded. */
+static void place(const struct scene *scene, struct instance *instance) {
+  const double *m = instance->scene_from_object;
+  double at[3];
+  m4_point(m, scene->meshes[instance->mesh].center, at);
+  for (int i = 0; i < 12; i++) instance->placed[i] = (float)m[i];
+  for (int k = 0; k < 3; k++) instance->placed[12 + k] = (float)(at[k] - scene->origin[k]);
+  instance->placed[15] = 1;
+}
+
+/* A scene that lies farther away than twice its size is seen from its middle. */
+static void choose_origin(struct scene *scene) {
+  double extent = scene_extent(scene);
+  for (int k = 0; k < 3; k++) {
+    double low = scene->bounds_min[k], high = scene->bounds_max[k];
+    scene->origin[k] = fmax(fabs(low), fabs(high)) > 2 * extent ? 0.5 * (low + high) : 0;
   }
 }
 
@@ -118,14 +149,16 @@ void scene_measure(struct scene *scene) {
     }
   }
   for (int k = 0; k < 3; k++) {
-    scene->bounds_min[k] = (float)low[k];
-    scene->bounds_max[k] = (float)high[k];
+    scene->bounds_min[k] = low[k];
+    scene->bounds_max[k] = high[k];
   }
+  choose_origin(scene);
+  for (int i = 0; i < scene->instance_count; i++) place(scene, &scene->instances[i]);
 }
 
 double scene_extent(const struct scene *scene) {
   double extent = 0;
-  for (int k = 0; k < 3; k++) extent = fmax(extent, (double)scene->bounds_max[k] - scene->bounds_min[k]);
+  for (int k = 0; k < 3; k++) extent = fmax(extent, scene->bounds_max[k] - scene->bounds_min[k]);
   return extent;
 }
 

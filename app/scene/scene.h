@@ -24,19 +24,23 @@ struct texture {
 
 /* Triangles in object space. Coordinates are finite and every triangle has an area. */
 struct mesh {
-  float *positions;  /* 3 a vertex */
+  float *positions;  /* 3 a vertex, seen from center */
+  double center[3];  /* object space; 0 along axes where the mesh is not far from 0 */
   float *texcoords;  /* 2 a vertex; NULL unless texture >= 0 */
   uint32_t *indices; /* 3 a triangle */
   uint32_t vertex_count, triangle_count;
   int texture;                        /* index into scene.textures; -1: opaque */
   float cutoff;                       /* texels with alpha >= cutoff block light, the others are holes */
-  float bounds_min[3], bounds_max[3]; /* object space */
+  float bounds_min[3], bounds_max[3]; /* of positions */
 };
 
 /* A mesh that stands somewhere. A pure receiver (casts = 0) is not given to the library. */
 struct instance {
   int mesh;
-  float scene_from_object[16]; /* affine and finite; may mirror */
+  double scene_from_object[16]; /* affine and finite; may mirror */
+  /* Derived by scene_measure, from positions to scene space seen from scene.origin: what is drawn, given to the library
+   * and traced. Its numbers are as small as the scene, however far away that lies. */
+  float placed[16];
   int casts, receives;
 };
 
@@ -78,7 +82,9 @@ struct scene {
   struct texture *textures;
   int mesh_count, instance_count, texture_count;
   /* Scene space, of what casts, or of everything when nothing does: B and H of the standard set-up. */
-  float bounds_min[3], bounds_max[3];
+  double bounds_min[3], bounds_max[3];
+  /* Scene space: what everything is seen from that ends in floats. 0 along axes where the scene is not far from 0. */
+  double origin[3];
   uint64_t triangle_count; /* over instances, the ground included */
   struct setup setup;
 };
@@ -93,16 +99,17 @@ double scene_extent(const struct scene *scene);
 float texture_alpha(const struct texture *texture, float u, float v);
 
 /* Adding to a scene under construction (importer, built-ins). Arrays are malloc'ed and taken over; all return the
- * index or -1 when memory ran out (the arrays are then freed). mesh->bounds_* are computed here. */
+ * index or -1 when memory ran out (the arrays are then freed). mesh->positions come in object space; center and bounds_*
+ * are computed here. */
 int scene_add_mesh(struct scene *scene, struct mesh *mesh);
-int scene_add_instance(struct scene *scene, int mesh, const float scene_from_object[16], int casts, int receives);
+int scene_add_instance(struct scene *scene, int mesh, const double scene_from_object[16], int casts, int receives);
 int scene_add_texture(struct scene *scene, const struct texture *texture);
 void mesh_free(struct mesh *mesh); /* one that was not added */
 
 /* Bounds in scene space. */
 void instance_bounds(const struct scene *scene, const struct instance *instance, double low[3], double high[3]);
 
-/* Computes bounds and triangle_count anew. */
+/* Computes bounds, triangle_count, origin and every instance's placed anew. */
 void scene_measure(struct scene *scene);
 
 #endif

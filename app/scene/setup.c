@@ -10,9 +10,9 @@ static const double pi = 3.14159265358979323846;
 
 void setup_standard(struct scene *scene) {
   double h = scene_extent(scene), b[3];
-  b[0] = 0.5 * ((double)scene->bounds_min[0] + scene->bounds_max[0]);
+  b[0] = 0.5 * (scene->bounds_min[0] + scene->bounds_max[0]);
   b[1] = scene->bounds_min[1];
-  b[2] = 0.5 * ((double)scene->bounds_min[2] + scene->bounds_max[2]);
+  b[2] = 0.5 * (scene->bounds_min[2] + scene->bounds_max[2]);
   struct setup *setup = &scene->setup;
   struct light *light = &setup->light;
   light->shape = PN_LIGHT_RECTANGLE;

@@ -152,8 +152,8 @@ int shape_finish(struct shape *shape, struct scene *scene, int texture, float cu
 int shape_place(struct scene *scene, int mesh, const double x[3], const double y[3], const double z[3],
                 const double origin[3]) {
   const double *columns[4] = {x, y, z, origin};
-  float m[16];
-  for (int i = 0; i < 16; i++) m[i] = i % 4 < 3 ? (float)columns[i / 4][i % 4] : i == 15;
+  double m[16];
+  for (int i = 0; i < 16; i++) m[i] = i % 4 < 3 ? columns[i / 4][i % 4] : i == 15;
   return scene_add_instance(scene, mesh, m, 1, 1) < 0 ? -1 : 0;
 }
 

@@ -40,7 +40,7 @@ static inline double v3_normalize(double a[3]) {
 }
 
 /* out = m * (p, 1), m affine, column-major. */
-static inline void m4_point(const float m[16], const double p[3], double out[3]) {
+static inline void m4_point(const double m[16], const double p[3], double out[3]) {
   for (int i = 0; i < 3; i++) out[i] = m[i] * p[0] + m[4 + i] * p[1] + m[8 + i] * p[2] + m[12 + i];
 }
 

@@ -45,7 +45,7 @@ static double cast(const struct scene *scene, const double origin[3], const doub
       double p[3][3], a[3], b[3], n[3], s[3], q[3];
       for (int c = 0; c < 3; c++) {
         const float *v = &mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)k + (size_t)c]];
-        const double object[3] = {v[0], v[1], v[2]};
+        const double object[3] = {mesh->center[0] + v[0], mesh->center[1] + v[1], mesh->center[2] + v[2]};
         m4_point(instance->scene_from_object, object, p[c]);
       }
       v3_sub(p[1], p[0], a);

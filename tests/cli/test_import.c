@@ -184,15 +184,15 @@ static void test_nested_transforms(void **state) {
   struct scene *scene = load("nested.gltf", 0);
   const float low[3] = {0, -3, 5}, high[3] = {2, 0, 5};
   for (int k = 0; k < 3; k++) {
-    assert_true(fabsf(scene->bounds_min[k] - low[k]) < 1e-6f);
-    assert_true(fabsf(scene->bounds_max[k] - high[k]) < 1e-6f);
+    assert_true(fabs(scene->bounds_min[k] - (double)low[k]) < 1e-6);
+    assert_true(fabs(scene->bounds_max[k] - (double)high[k]) < 1e-6);
   }
   scene_free(&scene);
   scene = load("nested.gltf", 1); /* the file's z is up: (x, y, z) stands at (x, z, -y) */
   const float low_z[3] = {0, 5, 0}, high_z[3] = {2, 5, 3};
   for (int k = 0; k < 3; k++) {
-    assert_true(fabsf(scene->bounds_min[k] - low_z[k]) < 1e-6f);
-    assert_true(fabsf(scene->bounds_max[k] - high_z[k]) < 1e-6f);
+    assert_true(fabs(scene->bounds_min[k] - (double)low_z[k]) < 1e-6);
+    assert_true(fabs(scene->bounds_max[k] - (double)high_z[k]) < 1e-6);
   }
   scene_free(&scene);
 }
