@@ -5,6 +5,7 @@
 #include "gl/host.h"
 #include "light.h"
 #include "maps/maps.h"
+#include "maps/origin.h"
 #include "maps/range.h"
 
 /* What PN_FIT_FRUSTUM looks at; for PN_FIT_VISIBLE too it comes first, because it costs nothing and may settle the
@@ -68,6 +69,7 @@ static pni_map_draw tile_draw(const pn_light *light, pn_casters *casters, const 
 static pn_result draw_maps(pn_light *light, pn_casters *casters, const pni_maps_want *want) {
   pni_gpu *gpu = pni_light_gpu(light);
   pni_maps *maps = &light->maps;
+  maps->rounding = pni_casters_rounding(casters, light->groups, &light->frame);
   pn_result result = pni_maps_shape(gpu, maps, want, maps->fit.tiles, light->desc.map_width, light->desc.map_height);
   if (result != PN_OK || pni_want_layers(want) == 0) return result;
   pni_maps_describe(gpu, maps, &light->frame, &light->emission);
@@ -111,16 +113,19 @@ static pn_result fit_to_view(pn_light *light, const pn_casters *casters, pn_rece
 static pn_result place_maps(pn_light *light, const pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
                             int visible_count, const pni_maps_want *want) {
   pni_fit_result fit = light->maps.fit;
+  pni_frame frame = light->frame;
   pni_region region = light->visible;
   bool has_visible = light->has_visible;
   uint32_t groups_before = light->groups;
   light->groups = groups;
+  pni_frame_place(&light->frame, casters, groups);
   pn_result result = fit_to_view(light, casters, visible, visible_count, want);
   if (result == PN_OK) {
     light->casters = casters->object.serial;
     return PN_OK;
   }
   light->maps.fit = fit;
+  light->frame = frame;
   light->visible = region;
   light->has_visible = has_visible;
   light->groups = groups_before;
@@ -168,18 +173,20 @@ pn_result pn_light_maps(const pn_light *light, pn_maps_info *out) {
   if (!maps->ready)
     return pni_fail(pni_light_gpu(light), PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "pn_maps_update comes first");
   const double *b = maps->fit.bounds;
+  double offset[3];
+  pni_frame_offset(&light->frame, offset);
   *out = (pn_maps_info){
       .empty = maps->fit.empty,
       .tiles = maps->fit.tiles,
       .layers = maps->fit.empty ? 0 : pni_want_layers(&maps->want),
       .width = light->desc.map_width,
       .height = light->desc.map_height,
-      .s0 = (float)b[0],
-      .t0 = (float)b[1],
-      .s1 = (float)b[2],
-      .t1 = (float)b[3],
-      .w_near = (float)maps->fit.w_near,
-      .w_far = (float)maps->fit.w_far,
+      .s0 = (float)(b[0] + offset[0]),
+      .t0 = (float)(b[1] + offset[1]),
+      .s1 = (float)(b[2] + offset[0]),
+      .t1 = (float)(b[3] + offset[1]),
+      .w_near = (float)(maps->fit.w_near + offset[2]),
+      .w_far = (float)(maps->fit.w_far + offset[2]),
       .gpu_memory = maps->depth.bytes + maps->range.bytes + maps->peel[0].bytes + maps->peel[1].bytes,
   };
   return PN_OK;

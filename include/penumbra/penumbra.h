@@ -144,6 +144,7 @@ typedef enum {
    * other */
   PN_MESSAGE_MESH_EDGES,
   PN_MESSAGE_CASTER_MESHES,           /* warning: the technique needs meshes, and some casters have none */
+  PN_MESSAGE_RECEIVER_POSITION,       /* position_error negative or not finite */
   PN_MESSAGE_COUNT
 } pn_message;
 
@@ -355,6 +356,12 @@ typedef struct {
   pn_gl mask_texture;
   int scale;          /* 1, 2 or 4: visibility is computed at 1/scale and brought up along depth and plane; 0 = 1 */
   pn_format format;   /* of the results; not of pn_visibility_into */
+  /* Scene units, finite, not negative: how far the host's vertex shader may have moved a vertex before depth was made,
+   * by float rounding; surfaces nearer than that to a caster are not shadowed by it. Depth's own precision is not meant.
+   * 0: estimated from view, as if positions went through scene space in floats, and from the casters' transforms: about
+   * 1e-6 of the camera's distance from the origin. Give what is true where a host loses less: 1e-7 of the view's size
+   * where it draws relative to the camera (docs/integration.md) */
+  float position_error;
 } pn_receiver_desc;
 /* As a zeroed one. */
 #ifdef __cplusplus
@@ -374,8 +381,8 @@ PN_API void pn_receiver_destroy(pn_receiver **receiver);
  * is copied here, and without normals the slopes of depth are found once, in the first pn_visibility after it, and kept
  * until the next call.
  * Errors: ARGUMENT (NULL_ARGUMENT, RECEIVER_SOURCE, RECEIVER_DEPTH, RECEIVER_VIEW, RECEIVER_MATRIX, RECEIVER_NORMAL,
- * RECEIVER_MASK, RECEIVER_SCALE, RECEIVER_FORMAT); where depth is copied UNSUPPORTED, OUT_OF_MEMORY, SHADER,
- * CONTEXT_LOST. */
+ * RECEIVER_MASK, RECEIVER_SCALE, RECEIVER_FORMAT, RECEIVER_POSITION); where depth is copied UNSUPPORTED,
+ * OUT_OF_MEMORY, SHADER, CONTEXT_LOST. */
 PN_API pn_result pn_receiver_set(pn_receiver *receiver, const pn_receiver_desc *desc);
 
 /* ---- light ------------------------------------------------------------------------------------------------------- */

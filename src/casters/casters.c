@@ -208,6 +208,14 @@ bool pni_casters_call_host(const pn_casters *casters, uint32_t groups) {
   return false;
 }
 
+pni_matrix pni_scene_from_vertex(const pn_casters *casters, const pni_instance_data *instance) {
+  pni_matrix out = instance->scene_from_object;
+  double at[3];
+  pni_matrix_point(&out, casters->meshes[instance->mesh].center, at);
+  memcpy(out.m + 12, at, sizeof at);
+  return out;
+}
+
 /* ---- bounds ------------------------------------------------------------------------------------------------------ */
 
 static void visit_box(const pni_box *box, const pni_matrix *transform, pni_box_visitor visit, void *user) {

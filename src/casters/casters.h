@@ -32,6 +32,10 @@ struct pn_casters {
 
 pni_mesh_data *pni_find_mesh(const pn_casters *casters, uint32_t id);
 
+/* From the positions in the instance's vertex buffer to scene space: composed in double, so that what is large in the
+ * transform and in the mesh's centre cancels before anything is rounded. */
+pni_matrix pni_scene_from_vertex(const pn_casters *casters, const pni_instance_data *instance);
+
 /* Calls visit with the eight corners, in scene space, of every box of every caster in groups. */
 typedef void (*pni_box_visitor)(void *user, const double corners[8][3]);
 void pni_casters_each_box(const pn_casters *casters, uint32_t groups, pni_box_visitor visit, void *user);

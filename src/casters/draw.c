@@ -52,7 +52,7 @@ static size_t next_run(const pni_mesh_data *mesh, const pni_matrix *cull_from_ob
 }
 
 typedef struct {
-  pni_matrix clip_from_object, cull_from_object;
+  pni_matrix clip_from_vertex, cull_from_object;
   bool clockwise; /* as the light sees it */
 } placed;
 
@@ -63,8 +63,8 @@ static pn_result begin_mesh(pni_gpu *gpu, const pni_mesh_data *mesh, const place
   pn_result result = pni_pass_program(gpu, &key);
   if (result != PN_OK) return result;
   float matrix[16];
-  pni_matrix_to_floats(&p->clip_from_object, matrix);
-  pni_set_matrix4(gpu, "pn_clip_from_object", matrix);
+  pni_matrix_to_floats(&p->clip_from_vertex, matrix);
+  pni_set_matrix4(gpu, "pn_clip_from_vertex", matrix);
   if (peel) pni_set_texture(gpu, "pn_peel_map", peel);
   if (alpha) {
     pni_set_ints(gpu, "pn_alpha_channel", mesh->alpha_channel, 0, 0, 0);
@@ -102,7 +102,8 @@ static pn_result draw_meshes(pn_casters *casters, const pni_caster_draw *draw) {
     const pni_instance_data *instance = &casters->instances[i];
     if (!(draw->groups >> instance->group & 1)) continue;
     const pni_mesh_data *mesh = &casters->meshes[instance->mesh];
-    placed p = {pni_matrix_multiply(&draw->clip_from_scene, &instance->scene_from_object),
+    pni_matrix scene_from_vertex = pni_scene_from_vertex(casters, instance);
+    placed p = {pni_matrix_multiply(&draw->clip_from_scene, &scene_from_vertex),
                 pni_matrix_multiply(&draw->cull_from_scene, &instance->scene_from_object),
                 mesh->clockwise != mirrors(&instance->scene_from_object)};
     pn_result result = draw_mesh(gpu, mesh, &p, draw->peel);

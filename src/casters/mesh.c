@@ -166,6 +166,26 @@ static void box_vertices(pni_mesh_data *mesh, const pn_span *positions) {
   mesh->box_count = used;
 }
 
+/* Around all boxes. */
+static void box_whole(pni_mesh_data *mesh) {
+  box_start(&mesh->whole);
+  for (int i = 0; i < mesh->box_count; i++) {
+    box_add(&mesh->whole, mesh->boxes[i].min);
+    box_add(&mesh->whole, mesh->boxes[i].max);
+  }
+}
+
+/* Where a mesh lies farther from its origin than it is wide, it is seen from its middle: the float product that places
+ * it then works with numbers as small as the mesh. The subtraction rounds nothing: a float minus another that is
+ * between half and twice it is a float. */
+static void find_center(pni_mesh_data *mesh) {
+  for (int i = 0; i < 3; i++) {
+    double low = mesh->whole.min[i], high = mesh->whole.max[i];
+    bool away = mesh->box_count > 0 && high - low <= 0.5 * fmax(fabs(low), fabs(high));
+    mesh->center[i] = away ? (float)(0.5 * (low + high)) : 0;
+  }
+}
+
 /* ---- buffers ----------------------------------------------------------------------------------------------------- */
 
 /* The span's elements tightly packed into a buffer of ours. */
@@ -181,6 +201,24 @@ static pn_result upload_span(pni_gpu *gpu, pni_buffer *to, const char *label, co
   return result;
 }
 
+/* Positions as the mesh keeps them. */
+static pn_result upload_centered(pni_gpu *gpu, pni_mesh_data *mesh, const pn_span *span) {
+  static const char label[] = "mesh positions";
+  const double *c = mesh->center;
+  if (c[0] == 0 && c[1] == 0 && c[2] == 0) return upload_span(gpu, &mesh->own_positions, label, span, 12);
+  float *packed = pni_reallocate(gpu, NULL, span->count * 12);
+  if (!packed) return PN_ERROR_OUT_OF_MEMORY;
+  for (size_t i = 0; i < span->count; i++) {
+    float *p = packed + 3 * i;
+    position_at(span, i, p);
+    for (int k = 0; k < 3; k++) p[k] = (float)(p[k] - c[k]);
+  }
+  pn_result result =
+      pni_buffer_fill(gpu, &mesh->own_positions, label, PNI_BUFFER_VERTICES, packed, span->count * 12);
+  pni_free(gpu, packed);
+  return result;
+}
+
 static void point_attribute(pni_gpu *gpu, const pni_mesh_data *mesh, int index, int floats, const pn_span *span,
                             const pni_buffer *own) {
   size_t packed = (size_t)floats * sizeof(float);
@@ -191,7 +229,8 @@ static void point_attribute(pni_gpu *gpu, const pni_mesh_data *mesh, int index, 
 
 static pn_result upload_positions(pni_gpu *gpu, pni_mesh_data *mesh, const pn_mesh_desc *d) {
   if (d->positions.data) {
-    pn_result result = upload_span(gpu, &mesh->own_positions, "mesh positions", &d->positions, 12);
+    find_center(mesh);
+    pn_result result = upload_centered(gpu, mesh, &d->positions);
     if (result != PN_OK) return result;
   }
   point_attribute(gpu, mesh, 0, 3, &d->positions, &mesh->own_positions);
@@ -270,6 +309,7 @@ static void given_box(pni_mesh_data *mesh, const float min[3], const float max[3
   memcpy(mesh->boxes[0].max, max, 12);
   mesh->box_count = 1;
   mesh->box_triangles = 0;
+  box_whole(mesh);
 }
 
 pn_result pni_mesh_build(pni_gpu *gpu, const pn_mesh_desc *d, pni_mesh_data *mesh) {
@@ -282,8 +322,9 @@ pn_result pni_mesh_build(pni_gpu *gpu, const pn_mesh_desc *d, pni_mesh_data *mes
   bool in_memory = d->positions.data && !d->indices.buffer;
   pn_result result = in_memory ? take_triangles(gpu, mesh, d) : bind_host_indices(gpu, mesh, d);
   if (result == PN_OK && d->positions.data && !in_memory) box_vertices(mesh, &d->positions);
-  if (result == PN_OK && boxed) given_box(mesh, d->bounds_min, d->bounds_max);
+  box_whole(mesh);
   if (result == PN_OK) result = upload_positions(gpu, mesh, d);
+  if (result == PN_OK && boxed) given_box(mesh, d->bounds_min, d->bounds_max);
   if (result != PN_OK) pni_mesh_drop(gpu, mesh, false);
   return result;
 }
@@ -293,7 +334,9 @@ pn_result pni_mesh_deform(pni_gpu *gpu, pni_mesh_data *mesh, const pn_span *posi
   if (positions) {
     if (mesh->kept_indices) result = upload_triangles(gpu, mesh, positions);
     else box_vertices(mesh, positions);
-    if (result == PN_OK) result = upload_span(gpu, &mesh->own_positions, "mesh positions", positions, 12);
+    box_whole(mesh);
+    find_center(mesh);
+    if (result == PN_OK) result = upload_centered(gpu, mesh, positions);
   }
   if (result == PN_OK && bounds) given_box(mesh, bounds, bounds + 3);
   mesh->pose++;

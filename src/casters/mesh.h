@@ -20,11 +20,13 @@ typedef struct pni_mesh_data {
   size_t kept_count;
   pni_vertices vertices;
   pni_buffer own_positions, own_indices, own_texcoords; /* none where the host owns it */
+  double center[3];                                     /* object space: own_positions are seen from it; else 0 */
   size_t draw_count;                                    /* vertices or indices drawn */
   pn_gl alpha_texture;
   int alpha_channel;
   float alpha_cutoff;
   bool clockwise;
+  pni_box whole; /* object space, around all boxes */
   pni_box *boxes;
   int box_count;
   size_t box_triangles; /* each box is over that many of the triangles drawn, in order; 0: it says nothing of that */

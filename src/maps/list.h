@@ -3,6 +3,7 @@
 #ifndef PNI_MAPS_LIST_H
 #define PNI_MAPS_LIST_H
 
+#include "casters/rounding.h"
 #include "gl/pass.h"
 #include "maps/block.h"
 #include "maps/fit.h"
@@ -36,6 +37,7 @@ typedef struct {
   pni_texture depth, range, peel[2], aside; /* aside: a level of the stack while it is drawn */
   pni_maps_want want;
   pni_fit_result fit;
+  pni_rounding rounding;        /* of what they show */
   pni_light_block block;        /* all but the parameters */
   pni_part later[PNI_MAPS_MAX]; /* with want.focus: what layers past the first of each map hold */
   bool ready;

@@ -27,7 +27,7 @@ static pn_result step(pn_receiver *receiver, const pni_frame *frame, const pni_t
     pni_set_texture(gpu, "pn_least_below", &from[0]);
     pni_set_texture(gpu, "pn_most_below", &from[1]);
   } else {
-    pni_receiver_uniforms(receiver, frame, 1);
+    pni_receiver_uniforms(receiver, frame, &(pni_rounding){0}, 1); /* positions alone are read */
     pni_set_int(gpu, "pn_parallel", frame->projection == PNI_PARALLEL);
   }
   pni_draw_screen(gpu);

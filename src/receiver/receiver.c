@@ -57,6 +57,9 @@ static pn_result check_values(pni_gpu *gpu, const pn_receiver_desc *d) {
                     "one of depth_texture and use_framebuffer must be set");
   if (!pni_floats_finite(d->view, 16) || !pni_floats_finite(d->projection, 16))
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX, "view or projection is not finite");
+  if (!isfinite(d->position_error) || d->position_error < 0)
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_POSITION,
+                    "position_error %g is negative or not finite", d->position_error);
   if (d->scale != 0 && d->scale != 1 && d->scale != 2 && d->scale != 4)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_SCALE, "scale %d is not 1, 2 or 4", d->scale);
   if ((int)d->format < PN_FORMAT_R16F || d->format > PN_FORMAT_R8)
@@ -198,6 +201,8 @@ static pn_result set_receiver(pn_receiver *receiver, pn_receiver_desc d) {
   receiver->scene_from_pixel = scene_from_pixel;
   find_depth_error(&source, d.reversed_depth != 0, receiver->depth_error);
   receiver->normal_error = normal_error;
+  pni_matrix view = pni_matrix_from_floats(d.view);
+  receiver->view_rounding = pni_view_rounding(&view);
   receiver->has_planes = false;
   receiver->set = true;
   return PN_OK;

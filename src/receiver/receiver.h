@@ -5,6 +5,7 @@
 #include "context.h"
 #include "gl/pass.h"
 #include "space/region.h"
+#include "space/rounding.h"
 
 struct pn_receiver {
   pni_object object;
@@ -16,6 +17,7 @@ struct pn_receiver {
   pni_matrix scene_from_pixel; /* (x + 1/2, y + 1/2, stored depth, 1) in the view */
   float depth_error[2];        /* of a stored depth: absolute, relative to it */
   float normal_error;          /* angle by which a given normal may be off, radians */
+  double view_rounding;        /* scene units: what the host's vertex shader may lose by the view's distance */
   pni_texture planes;    /* without given normals: how depth goes on around each pixel (receiver/planes.frag.glsl) */
   bool has_planes;       /* they are this frame's */
   pni_texture bounds[4]; /* what bounds.c reduces into: two pairs, in turn */
@@ -33,8 +35,9 @@ pn_result pni_receiver_surfaces(pn_receiver *receiver);
 /* Lines for a program that includes receiver/surface.glsl or receiver/depth.glsl. */
 enum { PNI_RECEIVER_DEFINES = 64 };
 void pni_receiver_defines(const pn_receiver *receiver, char out[PNI_RECEIVER_DEFINES]);
-/* Textures and uniforms for such a program, in the pass that has begun. scale 1: every pixel itself. */
-void pni_receiver_uniforms(pn_receiver *receiver, const pni_frame *frame, int scale);
+/* Textures and uniforms for such a program, in the pass that has begun. rounding: of the light's casters. scale 1: every
+ * pixel itself. */
+void pni_receiver_uniforms(pn_receiver *receiver, const pni_frame *frame, const pni_rounding *rounding, int scale);
 
 /* Adds what the camera sees to the region: reads a few numbers back. (receiver/bounds.c) */
 pn_result pni_receiver_bounds(pn_receiver *receiver, const pni_frame *frame, pni_region *region);

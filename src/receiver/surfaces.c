@@ -95,7 +95,17 @@ static void light_from_normal(const pn_receiver_desc *d, const pni_matrix *light
     for (int r = 0; r < 3; r++) out[3 * c + r] = (float)m.m[4 * c + r];
 }
 
-void pni_receiver_uniforms(pn_receiver *receiver, const pni_frame *frame, int scale) {
+/* How far, in scene units, surfaces and casters may lie apart by what floats lose far from the origin: by axes of the
+ * light's frame; then of the surfaces alone, any direction. */
+static void set_rounding(const pn_receiver *receiver, const pni_rounding *rounding) {
+  float given = receiver->desc.position_error, lost[4];
+  double host = given > 0 ? given : receiver->view_rounding + rounding->host;
+  for (int i = 0; i < 3; i++) lost[i] = (float)(host + rounding->map[i]);
+  lost[3] = (float)host;
+  pni_set_floats(gpu_of(receiver), "pn_lost", lost);
+}
+
+void pni_receiver_uniforms(pn_receiver *receiver, const pni_frame *frame, const pni_rounding *rounding, int scale) {
   pni_gpu *gpu = gpu_of(receiver);
   pni_matrix light_from_scene = pni_light_from_scene(frame), pixel_from_light;
   pni_matrix light_from_pixel = pni_matrix_multiply(&light_from_scene, &receiver->scene_from_pixel);
@@ -109,5 +119,6 @@ void pni_receiver_uniforms(pn_receiver *receiver, const pni_frame *frame, int sc
   pni_set_matrix3(gpu, "pn_light_from_normal", normal);
   find_eye(receiver, &light_from_scene, eye);
   pni_set_floats(gpu, "pn_eye", eye);
+  set_rounding(receiver, rounding);
   set_depth(receiver, scale);
 }

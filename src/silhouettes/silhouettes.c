@@ -92,8 +92,12 @@ pn_result pni_casters_each_mesh(pn_casters *casters, uint32_t groups, pni_mesh_v
     const pni_instance_data *instance = &casters->instances[i];
     pni_mesh_data *mesh = &casters->meshes[instance->mesh];
     if (!(groups >> instance->group & 1)) continue;
-    if (mesh->alpha_texture) others->holes++;
-    else result = visit(user, mesh, &instance->scene_from_object);
+    if (mesh->alpha_texture) {
+      others->holes++;
+      continue;
+    }
+    pni_matrix scene_from_vertex = pni_scene_from_vertex(casters, instance);
+    result = visit(user, mesh, &scene_from_vertex);
   }
   return result;
 }

@@ -78,6 +78,12 @@ pni_matrix pni_light_from_scene(const pni_frame *frame) {
   return out;
 }
 
+void pni_frame_offset(const pni_frame *frame, double m[3]) {
+  const double *axes[3] = {frame->u, frame->v, frame->z};
+  for (int i = 0; i < 3; i++) m[i] = frame->projection == PNI_PARALLEL ? dot(axes[i], frame->origin) : 0;
+  m[2] = -m[2];
+}
+
 void pni_map_point(const double p[3], pni_projection projection, double m[3]) {
   bool sun = projection == PNI_PARALLEL;
   double w = sun ? -p[2] : 1 / p[2];

@@ -43,6 +43,9 @@ static inline bool pni_is_nothing(double w) { return w <= -1e29; }
 bool pni_frame_axes(const float direction[3], const float axis_u[3], pni_frame *frame);
 pni_matrix pni_light_from_scene(const pni_frame *frame);
 
+/* Where the frame's origin lies in the (s, t, w) that the host is told: that of a sun begins at the scene's origin. */
+void pni_frame_offset(const pni_frame *frame, double m[3]);
+
 /* p in the light's frame to (s, t, w). */
 void pni_map_point(const double p[3], pni_projection projection, double m[3]);
 /* ... and back. */

@@ -54,10 +54,10 @@ typedef struct {
 
 static const member of_light[] = {
     MEMBER(pni_light_block, scene_u),   MEMBER(pni_light_block, scene_v),      MEMBER(pni_light_block, scene_z),
-    MEMBER(pni_light_block, extent),    MEMBER(pni_light_block, parallel),     MEMBER(pni_light_block, w_reach),
-    MEMBER(pni_light_block, map_count), MEMBER(pni_light_block, w_near),       MEMBER(pni_light_block, w_far),
-    MEMBER(pni_light_block, w_error),   MEMBER(pni_light_block, raster_error), MEMBER(pni_light_block, layers),
-    MEMBER(pni_light_block, texel),     MEMBER(pni_light_block, parameters),
+    MEMBER(pni_light_block, scene_error), MEMBER(pni_light_block, extent), MEMBER(pni_light_block, parallel),
+    MEMBER(pni_light_block, w_reach), MEMBER(pni_light_block, map_count), MEMBER(pni_light_block, w_near),
+    MEMBER(pni_light_block, w_far), MEMBER(pni_light_block, w_error), MEMBER(pni_light_block, raster_error),
+    MEMBER(pni_light_block, layers), MEMBER(pni_light_block, texel), MEMBER(pni_light_block, parameters),
 };
 
 static const member of_map[] = {

@@ -95,7 +95,7 @@ static surfaces run(stage *s, const view *v, const pni_frame *frame) {
   gpu->program = &names;
   glUseProgram(program);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-  pni_receiver_uniforms(s->receiver, frame, 1);
+  pni_receiver_uniforms(s->receiver, frame, &(pni_rounding){0}, 1);
   glBindVertexArray(array);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   surfaces out = {gl_read_texture(images[0], 0, -1, width, height, 4),

@@ -180,13 +180,13 @@ static pn_result draw_tile(const drawing *d, const pni_mesh_edges *e, int tile) 
   return PN_OK;
 }
 
-static pn_result draw_mesh(void *user, pni_mesh_data *mesh, const pni_matrix *scene_from_object) {
+static pn_result draw_mesh(void *user, pni_mesh_data *mesh, const pni_matrix *scene_from_vertex) {
   const drawing *d = user;
   const pni_job *job = d->job;
   pni_mesh_edges *edges;
   pn_result result = pni_mesh_edges_get(job->gpu, mesh, &edges);
   if (result != PN_OK || !edges) return result;
-  pni_matrix light_from_object = pni_matrix_multiply(&d->light_from_scene, scene_from_object);
+  pni_matrix light_from_object = pni_matrix_multiply(&d->light_from_scene, scene_from_vertex);
   result = pni_silhouettes_draw(job->gpu, edges, &light_from_object, job->frame->projection, d->cut);
   if (result == PN_OK) result = shape_tables(job->gpu, d->state, edges->count);
   if (result == PN_OK) result = keep_seen(d, edges);

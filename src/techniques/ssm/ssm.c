@@ -140,7 +140,7 @@ static pn_result look_up(const pni_ssm_scattering *s, pni_target target) {
   pass.channels = target.channels;
   pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
-  pni_receiver_uniforms(job->receiver, job->frame, 1);
+  pni_receiver_uniforms(job->receiver, job->frame, &job->maps->rounding, 1);
   pni_seen_set(gpu, &s->state->seen);
   pni_set_ints(gpu, "pn_layer", s->state->seen.want.layers, pni_want_layers(&job->maps->want), 0, 0);
   pni_set_texture(gpu, "pn_soft", s->soft);
@@ -182,12 +182,14 @@ static int accumulation(const pni_job *job) {
 
 static void hand_out(pni_ssm_state *state, const pni_job *job) {
   const pni_seen_want *w = &state->seen.want;
+  double offset[3];
+  pni_frame_offset(job->frame, offset);
   state->shown = (pn_soft_shadow_map){.sides = pni_want_layers(&job->maps->want),
                                       .layers = w->layers,
-                                      .s0 = (float)w->bounds[0],
-                                      .t0 = (float)w->bounds[1],
-                                      .s1 = (float)w->bounds[2],
-                                      .t1 = (float)w->bounds[3]};
+                                      .s0 = (float)(w->bounds[0] + offset[0]),
+                                      .t0 = (float)(w->bounds[1] + offset[1]),
+                                      .s1 = (float)(w->bounds[2] + offset[0]),
+                                      .t1 = (float)(w->bounds[3] + offset[1])};
   pni_texture_describe(&state->soft, &state->shown.image);
 }
 

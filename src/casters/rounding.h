@@ -1,0 +1,10 @@
+/* What float arithmetic loses of casters that lie far from their own origin, or are taken far and back. */
+#ifndef PNI_CASTERS_ROUNDING_H
+#define PNI_CASTERS_ROUNDING_H
+
+#include "casters/casters.h"
+#include "space/rounding.h"
+
+pni_rounding pni_casters_rounding(const pn_casters *casters, uint32_t groups, const pni_frame *frame);
+
+#endif

@@ -1,0 +1,24 @@
+/* What float arithmetic loses far from the origin (docs/space.md, 'Far from the origin'). */
+#ifndef PNI_SPACE_ROUNDING_H
+#define PNI_SPACE_ROUNDING_H
+
+#include "space/space.h"
+
+/* A matrix times a position, in floats: each term of a row is rounded as an entry, as a product and in three sums, by
+ * 2^-24 of it each time. */
+#define PNI_MATRIX_ROUNDING (5 * 0x1p-24)
+
+/* Scene units. */
+typedef struct {
+  double map[3]; /* of the library's own drawing, by the light frame's axes: host's buffers and draw callbacks */
+  double host;   /* of the host's drawing of the same meshes, into the depth that it hands over: any direction */
+} pni_rounding;
+
+/* What a box loses under the matrix because its coordinates, or the transform's translation, are larger than the box
+ * and where it ends up: by rows. */
+void pni_box_rounding(const pni_matrix *matrix, const float min[3], const float max[3], double out[3]);
+
+/* What positions near the camera lose in a host's shader that goes through scene space: scene units, any direction. */
+double pni_view_rounding(const pni_matrix *eye_from_scene);
+
+#endif
