@@ -70,6 +70,7 @@ static pn_result draw_maps(pn_light *light, pn_casters *casters, const pni_maps_
   pni_gpu *gpu = pni_light_gpu(light);
   pni_maps *maps = &light->maps;
   maps->rounding = pni_casters_rounding(casters, light->groups, &light->frame);
+  pni_map_rounding(&maps->rounding, light->frame.projection, maps->fit.bounds, maps->fit.w_near);
   pn_result result = pni_maps_shape(gpu, maps, want, maps->fit.tiles, light->desc.map_width, light->desc.map_height);
   if (result != PN_OK || pni_want_layers(want) == 0) return result;
   pni_maps_describe(gpu, maps, &light->frame, &light->emission);

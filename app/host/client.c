@@ -54,8 +54,7 @@ static int add_casters(struct client *client, const struct gpu_scene *gpu) {
     pn_mesh *mesh = &known[instance->mesh];
     pn_instance ignored;
     if (!mesh->id) status = add_mesh(client, gpu, instance->mesh, mesh);
-    if (!status)
-      status = client_check(client, pn_instance_add(client->casters, *mesh, instance->placed, 0, &ignored));
+    if (!status) status = client_check(client, pn_instance_add(client->casters, *mesh, instance->placed, 0, &ignored));
   }
   free(known);
   return status;

@@ -41,8 +41,8 @@ static void unproject(const struct unprojection *u, double ndc_x, double ndc_y, 
 }
 
 /* Whether the surface faces every corner of the light, and lies in front of it. */
-static int faces_light(const struct light *light, double corners[4][3], const double origin[3],
-                       const float position[3], const float normal[3]) {
+static int faces_light(const struct light *light, double corners[4][3], const double origin[3], const float position[3],
+                       const float normal[3]) {
   double p[3], n[3], d[3];
   for (int k = 0; k < 3; k++) {
     p[k] = origin[k] + position[k];

@@ -213,8 +213,7 @@ static pn_result upload_centered(pni_gpu *gpu, pni_mesh_data *mesh, const pn_spa
     position_at(span, i, p);
     for (int k = 0; k < 3; k++) p[k] = (float)(p[k] - c[k]);
   }
-  pn_result result =
-      pni_buffer_fill(gpu, &mesh->own_positions, label, PNI_BUFFER_VERTICES, packed, span->count * 12);
+  pn_result result = pni_buffer_fill(gpu, &mesh->own_positions, label, PNI_BUFFER_VERTICES, packed, span->count * 12);
   pni_free(gpu, packed);
   return result;
 }

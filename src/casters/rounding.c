@@ -15,7 +15,7 @@ static void add_host(pni_rounding *rounding, const pni_matrix *scene_from_object
 }
 
 pni_rounding pni_casters_rounding(const pn_casters *casters, uint32_t groups, const pni_frame *frame) {
-  pni_rounding rounding = {{0}, 0};
+  pni_rounding rounding = {{0}, 0, 0};
   pni_matrix light_from_scene = pni_light_from_scene(frame);
   for (int i = 0; i < casters->instance_count; i++) {
     const pni_instance_data *instance = &casters->instances[i];

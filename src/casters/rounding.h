@@ -5,6 +5,7 @@
 #include "casters/casters.h"
 #include "space/rounding.h"
 
+/* map: of the matrix that takes them to the light's frame. */
 pni_rounding pni_casters_rounding(const pn_casters *casters, uint32_t groups, const pni_frame *frame);
 
 #endif

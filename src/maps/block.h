@@ -17,7 +17,7 @@ typedef struct {
 
 typedef struct {
   float scene_u[4], scene_v[4], scene_z[4]; /* light frame from scene, by rows */
-  float scene_error[4];                     /* of what far object coordinates lose, by axes of the light frame */
+  float scene_error[4];                     /* by what far object coordinates lose: light frame, and along z per z */
   float extent[2];                          /* A_u, A_v */
   float parallel;                           /* 1 for a sun */
   float w_reach;                            /* no receiver lies below (maps that reach as far as shadows do) */

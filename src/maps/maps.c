@@ -56,6 +56,7 @@ void pni_maps_describe(pni_gpu *gpu, pni_maps *maps, const pni_frame *frame, con
   axis_row(&light_from_scene, 1, b->scene_v);
   axis_row(&light_from_scene, 2, b->scene_z);
   for (int i = 0; i < 3; i++) b->scene_error[i] = (float)(maps->rounding.map[i] + maps->rounding.host);
+  b->scene_error[3] = (float)maps->rounding.map_per_z;
   for (int i = 0; i < 2; i++) b->extent[i] = (float)emission->extent[i];
   b->parallel = frame->projection == PNI_PARALLEL ? 1.0f : 0.0f;
   b->w_reach = (float)maps->fit.w_reach;

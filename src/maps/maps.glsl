@@ -20,7 +20,7 @@ struct pn_MapData {
 
 struct pn_LightData {
   vec4 scene_u, scene_v, scene_z; // light frame from scene, by rows; forward shading only
-  vec4 scene_error;               // of what far object coordinates lose, by axes of the light frame; the same
+  vec4 scene_error;               // by what far object coordinates lose: light frame, and along z per z; the same
   vec2 extent;                    // A_u, A_v
   float parallel;                 // 1 for a sun
   float w_reach;                  // no receiver lies below (maps that reach as far as shadows do)

@@ -58,8 +58,8 @@ static pn_result check_values(pni_gpu *gpu, const pn_receiver_desc *d) {
   if (!pni_floats_finite(d->view, 16) || !pni_floats_finite(d->projection, 16))
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX, "view or projection is not finite");
   if (!isfinite(d->position_error) || d->position_error < 0)
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_POSITION,
-                    "position_error %g is negative or not finite", d->position_error);
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_POSITION, "position_error %g is negative or not finite",
+                    d->position_error);
   if (d->scale != 0 && d->scale != 1 && d->scale != 2 && d->scale != 4)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_SCALE, "scale %d is not 1, 2 or 4", d->scale);
   if ((int)d->format < PN_FORMAT_R16F || d->format > PN_FORMAT_R8)

@@ -11,7 +11,7 @@ uniform highp sampler2D pn_planes; // receiver/planes.frag.glsl
 #endif
 uniform mat4 pn_light_from_pixel; // (x + 1/2, y + 1/2, stored depth, 1) in the view
 uniform mat4 pn_pixel_from_light;
-uniform vec4 pn_lost; // by floats far from the origin: of p by axes, casters too; of surfaces alone, any direction
+uniform vec4 pn_lost; // by floats far from the origin, of surfaces and casters: by axes, and along z per z
 uniform vec4 pn_eye; // the camera's centre in the light's frame; w 0: the direction to it
 
 struct pn_Surface {
@@ -37,7 +37,8 @@ void pn_position(ivec2 pixel, float depth, out vec3 p, out vec3 error) {
   vec4 sum = abs(pn_light_from_pixel[0]) * a.x + abs(pn_light_from_pixel[1]) * a.y + abs(pn_light_from_pixel[2]) * a.z +
              abs(pn_light_from_pixel[3]);
   error = abs((along.xyz - p * along.w) / h.w) * pn_depth_error(depth) +
-          3e-7 * ((sum.xyz + abs(p) * sum.w) / abs(h.w) + abs(p)) + pn_lost.xyz;
+          3e-7 * ((sum.xyz + abs(p) * sum.w) / abs(h.w) + abs(p)) +
+          pn_lost.xyz + vec3(0.0, 0.0, pn_lost.w * abs(p.z));
 }
 
 #if !PN_NORMALS

@@ -96,12 +96,12 @@ static void light_from_normal(const pn_receiver_desc *d, const pni_matrix *light
 }
 
 /* How far, in scene units, surfaces and casters may lie apart by what floats lose far from the origin: by axes of the
- * light's frame; then of the surfaces alone, any direction. */
+ * light's frame; and along z per z. */
 static void set_rounding(const pn_receiver *receiver, const pni_rounding *rounding) {
   float given = receiver->desc.position_error, lost[4];
   double host = given > 0 ? given : receiver->view_rounding + rounding->host;
   for (int i = 0; i < 3; i++) lost[i] = (float)(host + rounding->map[i]);
-  lost[3] = (float)host;
+  lost[3] = (float)rounding->map_per_z;
   pni_set_floats(gpu_of(receiver), "pn_lost", lost);
 }
 

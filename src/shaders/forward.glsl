@@ -24,7 +24,9 @@ float pn_visibility(int light, vec3 position, vec3 geometric_normal) {
   // An interpolated position is off by some units in the last place of the largest term.
   vec3 size = vec3(dot(abs(u.xyz), abs(position)) + abs(u.w), dot(abs(v.xyz), abs(position)) + abs(v.w),
                    dot(abs(z.xyz), abs(position)) + abs(z.w));
-  pn_ShadedPoint r = pn_shaded_point(light, p, 1e-6 * size + pn_lights[light].scene_error.xyz, n, 1e-4);
+  vec4 lost = pn_lights[light].scene_error;
+  vec3 error = 1e-6 * size + lost.xyz + vec3(0.0, 0.0, lost.w * abs(p.z));
+  pn_ShadedPoint r = pn_shaded_point(light, p, error, n, 1e-4);
   if (pn_unlit(light, r) || pn_above_casters(light, r)) return 1.0;
   return clamp(pn_technique_of(light, r), 0.0, 1.0);
 }

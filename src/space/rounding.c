@@ -18,6 +18,15 @@ void pni_box_rounding(const pni_matrix *matrix, const float min[3], const float 
   }
 }
 
+/* A sun's rows are scaled, no more. A rectangle's divide by z: s = x / z is then off by (e_x + abs(s) e_z) / z, and
+ * depth, which mixes 1 and z so that it spans w_near to w_far, by what moves w by e_z w w_near. */
+void pni_map_rounding(pni_rounding *rounding, pni_projection projection, const double bounds[4], double w_near) {
+  if (projection == PNI_PARALLEL) return;
+  for (int i = 0; i < 2; i++) rounding->map[i] += fmax(fabs(bounds[i]), fabs(bounds[i + 2])) * rounding->map[2];
+  rounding->map_per_z = rounding->map[2] * w_near;
+  rounding->map[2] = 0;
+}
+
 /* The camera is at the eye's origin: every term of that product cancels. What surfaces lie away from it is as large as
  * the view itself. */
 double pni_view_rounding(const pni_matrix *eye_from_scene) {

@@ -10,13 +10,18 @@
 
 /* Scene units. */
 typedef struct {
-  double map[3]; /* of the library's own drawing, by the light frame's axes: host's buffers and draw callbacks */
-  double host;   /* of the host's drawing of the same meshes, into the depth that it hands over: any direction */
+  /* Of drawing into maps, by the light frame's axes, of the host's buffers and callbacks; the third grows with z: */
+  double map[3], map_per_z;
+  double host; /* of the host's drawing of the same meshes, into the depth that it hands over: any direction */
 } pni_rounding;
 
 /* What a box loses under the matrix because its coordinates, or the transform's translation, are larger than the box
  * and where it ends up: by rows. */
 void pni_box_rounding(const pni_matrix *matrix, const float min[3], const float max[3], double out[3]);
+
+/* From what light_from_object loses, in rounding->map, to what clip_from_object does, whose rows mix that matrix's: for
+ * maps within these bounds. */
+void pni_map_rounding(pni_rounding *rounding, pni_projection projection, const double bounds[4], double w_near);
 
 /* What positions near the camera lose in a host's shader that goes through scene space: scene units, any direction. */
 double pni_view_rounding(const pni_matrix *eye_from_scene);
