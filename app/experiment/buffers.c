@@ -7,12 +7,10 @@
 const char *const inside_kinds[INSIDE_COUNT] = {
     [INSIDE_SEARCH] = "search", [INSIDE_SOFT] = "ssm", [INSIDE_BOUND] = "bound"};
 
-/* Scene space, as near as floats come to it: they are coarse where the scene lies far away. */
 static int save_positions(const struct save *save, const struct view *view) {
-  size_t count = 3 * (size_t)view->width * (size_t)view->height;
-  float *positions = malloc(count * sizeof *positions);
+  float *positions = malloc(3 * (size_t)view->width * (size_t)view->height * sizeof *positions);
   if (!positions) return memory_error();
-  for (size_t i = 0; i < count; i++) positions[i] = (float)(view->origin[i % 3] + view->position[i]);
+  view_positions(view, positions);
   int status = save_vectors(save, "position.exr", positions);
   free(positions);
   return status;

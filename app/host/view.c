@@ -131,6 +131,11 @@ int view_read(const struct gbuffer *g, const struct scene *scene, struct view **
   return ok ? STATUS_OK : memory_error();
 }
 
+void view_positions(const struct view *view, float *out) {
+  for (size_t i = 0; i < 3 * (size_t)view->width * (size_t)view->height; i++)
+    out[i] = (float)(view->origin[i % 3] + view->position[i]);
+}
+
 void view_free(struct view **view) {
   if (!view || !*view) return;
   free((*view)->position);

@@ -16,4 +16,7 @@ struct view {
 int view_read(const struct gbuffer *gbuffer, const struct scene *scene, struct view **out);
 void view_free(struct view **view);
 
+/* In scene space, three a pixel, as near as floats come to it: they are coarse where the scene lies far away. */
+void view_positions(const struct view *view, float *out);
+
 #endif
