@@ -359,8 +359,8 @@ typedef struct {
   /* Scene units, finite, not negative: how far the host's vertex shader may have moved a vertex before depth was made,
    * by float rounding; surfaces nearer than that to a caster are not shadowed by it. Depth's own precision is not meant.
    * 0: estimated from view, as if positions went through scene space in floats, and from the casters' transforms: about
-   * 1e-6 of the camera's distance from the origin. Give what is true where a host loses less: 1e-7 of the view's size
-   * where it draws relative to the camera (docs/integration.md) */
+   * 1e-6 of the camera's distance from the origin, next to nothing near it. A host that composes object to clip in double
+   * loses less, about 2e-7 of the view's size (docs/integration.md) */
   float position_error;
 } pn_receiver_desc;
 /* As a zeroed one. */
