@@ -24,11 +24,14 @@ static const char *const cast_names[] = {"memory", "buffers", "callback"};
 
 /* ---- scenes ------------------------------------------------------------------------------------------------------ */
 
+/* On a grid of 1/64, which floats have up to 2^18: what comes back from there is the same mesh. */
+static vec3 on_grid(vec3 p) { return v3(round(64 * p.x) / 64, round(64 * p.y) / 64, round(64 * p.z) / 64); }
+
 /* Vertices after the matrix and the way, rounded: that is the mesh from now on. */
 static void bake(mesh *m, const mat4 *matrix, vec3 way) {
   m->wave = 0;
   for (int i = 0; i < m->vertex_count; i++) {
-    vec3 q = add(project(matrix, v3_of(m->posed + 3 * i), NULL), way);
+    vec3 q = add(project(matrix, on_grid(v3_of(m->posed + 3 * i)), NULL), way);
     float *p = m->rest + 3 * i;
     p[0] = (float)q.x, p[1] = (float)q.y, p[2] = (float)q.z;
   }
@@ -107,7 +110,9 @@ static int find_truth(void **state) {
   assert_true(surfaces_draw(&seen, &h.draw, &h.world, &view));
   for (int shape = 0; shape < 2; shape++) {
     pn_light_desc desc = light_there((pn_light_shape)shape, v3(0, 0, 0));
-    pn_maps_info maps = {.s1 = 1.5f, .t1 = 1.5f, .width = 256, .height = 256}; /* not finer than the maps will be */
+    /* Texels larger than the maps' will be: by so much a shadow's edge moves where floats have steps of 1/64. */
+    pn_maps_info maps = {
+        .s1 = shape == PN_LIGHT_SUN ? 5 : 1.5f, .t1 = shape == PN_LIGHT_SUN ? 5 : 1.5f, .width = 256, .height = 256};
     truth_light light = truth_light_of(&desc, &maps);
     for (int i = 0; i < PIXELS; i++)
       lit[shape][i] = alone(i % WIDTH, i / WIDTH) && seen.position[4 * i + 3] != SCENE_FLAG &&
@@ -133,6 +138,7 @@ typedef struct {
   int normals;
   const char *spec;
   float position_error;
+  int exact_depth; /* BACK only: depth is drawn of the scene that never went away */
 } setting;
 
 static GLuint normal_texture(void) {
@@ -143,6 +149,14 @@ static GLuint normal_texture(void) {
   return texture;
 }
 
+/* The camera's depth of another scene, in the same GL context. */
+static void draw_depth_of(const scene *world, const camera_view *v) {
+  renderer other;
+  assert_true(renderer_open(&other, world));
+  renderer_depth(&other, world, &v->view, &v->target);
+  renderer_close(&other);
+}
+
 static float *draw(const setting *s) {
   host h;
   camera_view v;
@@ -151,6 +165,13 @@ static float *draw(const setting *s) {
   camera view = camera_there(place);
   open_far(&h, s->kind, s->way);
   assert_int_equal(host_view(&h, &view, &v), PN_OK);
+  if (s->exact_depth) {
+    scene home;
+    scene_make(&home);
+    displace(&home, PLACED, v3(0, 0, 0));
+    draw_depth_of(&home, &v);
+    scene_free(&home);
+  }
   pn_receiver_desc desc = host_receiver_desc(&view, &v.target);
   if (s->normals) desc.normal_texture = normal_texture();
   desc.position_error = s->position_error;
@@ -250,6 +271,33 @@ static void test_sun(void **state) {
   check_everywhere(PN_LIGHT_SUN, 1);
 }
 
+/* Far enough that each end alone would darken lit faces: the host's depth, where the library's own map is exact; and
+ * the map of the host's buffers, under depth that is. */
+static void check_one_end(pn_light_shape shape, int exact_depth) {
+  setting s = {.kind = PLACED, .cast = exact_depth ? CAST_BUFFERS : CAST_MEMORY, .shape = shape, .normals = 1};
+  float *base = draw(&s);
+  s.kind = BACK;
+  s.way = v3(-150000, 140000, 200000);
+  s.exact_depth = exact_depth;
+  s.position_error = exact_depth ? 1e-6f : 0;
+  float *image = draw(&s);
+  check_lit(&s, image, base);
+  free(image);
+  free(base);
+}
+
+static void test_host_end(void **state) {
+  (void)state;
+  check_one_end(PN_LIGHT_RECTANGLE, 0);
+  check_one_end(PN_LIGHT_SUN, 0);
+}
+
+static void test_map_end(void **state) {
+  (void)state;
+  check_one_end(PN_LIGHT_RECTANGLE, 1);
+  check_one_end(PN_LIGHT_SUN, 1);
+}
+
 /* The farthest and worst for each technique: vertices in buffers. */
 static void test_techniques(void **state) {
   (void)state;
@@ -338,7 +386,8 @@ static void test_sun_bounds(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_rectangle),  cmocka_unit_test(test_rectangle_without_normals),
-      cmocka_unit_test(test_sun),        cmocka_unit_test(test_techniques),
+      cmocka_unit_test(test_sun),        cmocka_unit_test(test_host_end),
+      cmocka_unit_test(test_map_end),    cmocka_unit_test(test_techniques),
       cmocka_unit_test(test_given),      cmocka_unit_test(test_refused),
       cmocka_unit_test(test_sun_bounds),
   };
