@@ -99,8 +99,8 @@ double scene_extent(const struct scene *scene);
 float texture_alpha(const struct texture *texture, float u, float v);
 
 /* Adding to a scene under construction (importer, built-ins). Arrays are malloc'ed and taken over; all return the
- * index or -1 when memory ran out (the arrays are then freed). mesh->positions come in object space; center and bounds_*
- * are computed here. */
+ * index or -1 when memory ran out (the arrays are then freed). mesh->positions come in object space; center and
+ * bounds_* are computed here. */
 int scene_add_mesh(struct scene *scene, struct mesh *mesh);
 int scene_add_instance(struct scene *scene, int mesh, const double scene_from_object[16], int casts, int receives);
 int scene_add_texture(struct scene *scene, const struct texture *texture);

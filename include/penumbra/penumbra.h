@@ -356,11 +356,11 @@ typedef struct {
   pn_gl mask_texture;
   int scale;          /* 1, 2 or 4: visibility is computed at 1/scale and brought up along depth and plane; 0 = 1 */
   pn_format format;   /* of the results; not of pn_visibility_into */
-  /* Scene units, finite, not negative: how far the host's vertex shader may have moved a vertex before depth was made,
-   * by float rounding; surfaces nearer than that to a caster are not shadowed by it. Depth's own precision is not meant.
-   * 0: estimated from view, as if positions went through scene space in floats, and from the casters' transforms: about
-   * 1e-6 of the camera's distance from the origin, next to nothing near it. A host that composes object to clip in double
-   * loses less, about 2e-7 of the view's size (docs/integration.md) */
+  /* Scene units, finite, not negative: how far the host's vertex shader may have moved a vertex, by float rounding,
+   * before depth was made; a caster nearer to a surface than that casts no shadow on it. Depth's own precision is not
+   * meant. 0: estimated from view, as if positions went through scene space in floats, and from the casters'
+   * transforms: about 1e-6 of the camera's distance from the origin, next to nothing near it. A host that composes
+   * object to clip in double loses less, about 2e-7 of the view's size (docs/integration.md) */
   float position_error;
 } pn_receiver_desc;
 /* As a zeroed one. */

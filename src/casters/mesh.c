@@ -6,6 +6,7 @@
 
 #include "gl/host.h"
 #include "gl/inspect.h"
+#include "space/rounding.h"
 
 /* ---- checks ------------------------------------------------------------------------------------------------------ */
 
@@ -175,15 +176,10 @@ static void box_whole(pni_mesh_data *mesh) {
   }
 }
 
-/* Where a mesh lies farther from its origin than it is wide, it is seen from its middle: the float product that places
- * it then works with numbers as small as the mesh. The subtraction rounds nothing: a float minus another that is
- * between half and twice it is a float. */
+/* The float product that places the mesh then works with numbers as small as the mesh. */
 static void find_center(pni_mesh_data *mesh) {
-  for (int i = 0; i < 3; i++) {
-    double low = mesh->whole.min[i], high = mesh->whole.max[i];
-    bool away = mesh->box_count > 0 && high - low <= 0.5 * fmax(fabs(low), fabs(high));
-    mesh->center[i] = away ? (float)(0.5 * (low + high)) : 0;
-  }
+  for (int i = 0; i < 3; i++)
+    mesh->center[i] = mesh->box_count > 0 ? pni_far_middle(mesh->whole.min[i], mesh->whole.max[i]) : 0;
 }
 
 /* ---- buffers ----------------------------------------------------------------------------------------------------- */

@@ -35,8 +35,8 @@ pn_result pni_receiver_surfaces(pn_receiver *receiver);
 /* Lines for a program that includes receiver/surface.glsl or receiver/depth.glsl. */
 enum { PNI_RECEIVER_DEFINES = 64 };
 void pni_receiver_defines(const pn_receiver *receiver, char out[PNI_RECEIVER_DEFINES]);
-/* Textures and uniforms for such a program, in the pass that has begun. rounding: of the light's casters. scale 1: every
- * pixel itself. */
+/* Textures and uniforms for such a program, in the pass that has begun. rounding: of the light's casters. scale 1:
+ * every pixel itself. */
 void pni_receiver_uniforms(pn_receiver *receiver, const pni_frame *frame, const pni_rounding *rounding, int scale);
 
 /* Adds what the camera sees to the region: reads a few numbers back. (receiver/bounds.c) */

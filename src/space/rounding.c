@@ -2,6 +2,11 @@
 
 #include <math.h>
 
+double pni_far_middle(float low, float high) {
+  bool away = (double)high - low <= 0.5 * fmax(fabs(low), fabs(high));
+  return away ? (float)(0.5 * ((double)low + high)) : 0;
+}
+
 /* Where a box lies around its middle, terms are as large as what comes out of their sum, and the tolerances of depth
  * and map hold what that loses. By as much as they are larger, more is lost. */
 void pni_box_rounding(const pni_matrix *matrix, const float min[3], const float max[3], double out[3]) {
@@ -9,10 +14,10 @@ void pni_box_rounding(const pni_matrix *matrix, const float min[3], const float 
     const double *m = matrix->m + row;
     double terms = fabs(m[12]), around = 0, middle = m[12];
     for (int i = 0; i < 3; i++) {
-      double low = min[i], high = max[i];
+      double low = min[i], high = max[i], far = pni_far_middle(min[i], max[i]);
       terms += fabs(m[4 * i]) * fmax(fabs(low), fabs(high));
-      around += fabs(m[4 * i]) * 0.5 * (high - low);
-      middle += m[4 * i] * 0.5 * (low + high);
+      around += fabs(m[4 * i]) * fmax(fabs(low - far), fabs(high - far));
+      middle += m[4 * i] * far;
     }
     out[row] = PNI_MATRIX_ROUNDING * fmax(terms - around - fabs(middle), 0);
   }

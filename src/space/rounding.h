@@ -15,8 +15,11 @@ typedef struct {
   double host; /* of the host's drawing of the same meshes, into the depth that it hands over: any direction */
 } pni_rounding;
 
-/* What a box loses under the matrix because its coordinates, or the transform's translation, are larger than the box
- * and where it ends up: by rows. */
+/* What coordinates between low and high are better seen from: their middle, where that is at least as far away as they
+ * are wide; else 0. The difference is then a float, without rounding: low and high are within a factor of two. */
+double pni_far_middle(float low, float high);
+
+/* What a box loses under the matrix because its coordinates are larger than when seen from their middle: by rows. */
 void pni_box_rounding(const pni_matrix *matrix, const float min[3], const float max[3], double out[3]);
 
 /* From what light_from_object loses, in rounding->map, to what clip_from_object does, whose rows mix that matrix's: for

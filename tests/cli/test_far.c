@@ -33,7 +33,7 @@ static int leave_folder(void **state) {
   return chdir("/") == 0 ? system(command) : -1;
 }
 
-/* ---- the model ---------------------------------------------------------------------------------------------------- */
+/* ---- the model --------------------------------------------------------------------------------------------------- */
 
 /* Three boxes, turned about y: one stands, one lies over it, one floats beside. One unit wide. */
 static const struct {

@@ -1,6 +1,7 @@
 /* The same scene far from the origin, in a host that loses what floats lose there: it knows nothing but floats, and its
  * vertex shader goes through scene space. What no shadow falls on stays lit, whatever casts and however it came there;
- * and shadows stay where they are, up to what such a host's depth has lost. Truth is that of the scene at the origin. */
+ * and shadows stay where they are, up to what such a host's depth has lost. The truth is that of the scene at the
+ * origin. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -62,8 +62,10 @@ static void test_box(void **state) {
     for (int row = 0; row < 3; row++) {
       double half = 0, centre = matrix.m[12 + row];
       for (int i = 0; i < 3; i++) {
-        half += fabs(matrix.m[4 * i + row]) * 0.5 * ((double)high[i] - low[i]);
-        centre += matrix.m[4 * i + row] * 0.5 * ((double)high[i] + low[i]);
+        bool away = (double)high[i] - low[i] <= 0.5 * fmax(fabs(high[i]), fabs(low[i]));
+        double from = away ? 0.5 * ((double)high[i] + low[i]) : 0;
+        half += fabs(matrix.m[4 * i + row]) * fmax(fabs(high[i] - from), fabs(low[i] - from));
+        centre += matrix.m[4 * i + row] * from;
       }
       double bound = lost[row] + 5 * 0x1p-24 * (half + fabs(centre)), worst = 0;
       for (int k = 0; k < 8; k++) {
