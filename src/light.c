@@ -173,6 +173,7 @@ void pni_light_fill_block(const pn_light *light, pni_light_block *block) {
 pn_result pni_light_bind_block(pn_light *light) {
   pni_gpu *gpu = pni_light_gpu(light);
   pni_light_block block;
+  if (gpu->plan.on) return pni_buffer_reserve(gpu, &light->block, "light", PNI_BUFFER_BLOCK, sizeof block);
   pni_light_fill_block(light, &block);
   if (!light->block.id || memcmp(&block, &light->uploaded, sizeof block) != 0) {
     pn_result result = pni_buffer_fill(gpu, &light->block, "light", PNI_BUFFER_BLOCK, &block, sizeof block);

@@ -3,6 +3,7 @@
 
 #include "gl/device.h"
 #include "gl/host.h"
+#include "gl/plan.h"
 #include "light.h"
 #include "maps/maps.h"
 #include "maps/range.h"
@@ -107,35 +108,55 @@ static pn_result fit_to_view(pn_light *light, const pn_casters *casters, pn_rece
   return result;
 }
 
-/* Where the maps are to lie. Nothing is drawn yet: on failure the light and its maps stay as they were. */
-static pn_result place_maps(pn_light *light, const pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
-                            int visible_count, const pni_maps_want *want) {
-  pni_fit_result fit = light->maps.fit;
-  pni_region region = light->visible;
-  bool has_visible = light->has_visible;
-  uint32_t groups_before = light->groups;
-  light->groups = groups;
-  pn_result result = fit_to_view(light, casters, visible, visible_count, want);
-  if (result == PN_OK) {
-    light->casters = casters->object.serial;
-    return PN_OK;
-  }
-  light->maps.fit = fit;
-  light->visible = region;
-  light->has_visible = has_visible;
-  light->groups = groups_before;
-  return result;
+/* ---- all or nothing ---------------------------------------------------------------------------------------------- */
+
+/* What of a light an update changes, but for what plans bring back themselves. */
+typedef struct {
+  pni_maps maps;
+  pni_region visible;
+  bool has_visible;
+  uint64_t casters;
+  uint32_t groups;
+} last_update;
+
+static last_update remember(const pn_light *light) {
+  return (last_update){light->maps, light->visible, light->has_visible, light->casters, light->groups};
 }
 
+static void bring_back(pn_light *light, const last_update *last) {
+  light->maps = last->maps;
+  light->visible = last->visible;
+  light->has_visible = last->has_visible;
+  light->casters = last->casters;
+  light->groups = last->groups;
+}
+
+static pn_result make_maps(pn_light *light, pn_casters *casters, const pni_maps_want *want) {
+  pn_result result = light->maps.fit.empty ? PN_OK : draw_maps(light, casters, want);
+  return result == PN_OK ? update_technique(light) : result;
+}
+
+/* Planned first: a failure leaves the maps of the last update, if there are any that can still be used. */
 static pn_result update_maps(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
                              int visible_count) {
+  pni_gpu *gpu = pni_light_gpu(light);
+  bool keep = light->maps.ready;
+  last_update last = remember(light);
   pni_maps_want want;
   light->technique->want(light->values, &want);
-  pn_result result = pni_gpu_check_lost(pni_light_gpu(light));
-  if (result == PN_OK) result = place_maps(light, casters, groups, visible, visible_count, &want);
-  if (result != PN_OK) return result;
-  if (!light->maps.fit.empty) result = draw_maps(light, casters, &want);
-  if (result == PN_OK) result = update_technique(light);
+  light->groups = groups;
+  light->casters = casters->object.serial;
+  pn_result result = pni_gpu_check_lost(gpu);
+  if (result == PN_OK) result = fit_to_view(light, casters, visible, visible_count, &want);
+  if (result == PN_OK) {
+    pni_plan_begin(gpu, keep);
+    result = pni_plan_end(gpu, make_maps(light, casters, &want));
+  }
+  if (result != PN_OK) {
+    if (keep) bring_back(light, &last);
+    return result;
+  }
+  result = make_maps(light, casters, &want);
   light->maps.ready = result == PN_OK;
   return result;
 }

@@ -4,12 +4,14 @@
 #include "gl/device.h"
 #include "gl/host.h"
 #include "gl/inspect.h"
+#include "gl/plan.h"
 #include "light.h"
 
 /* ---- visibility -------------------------------------------------------------------------------------------------- */
 
 static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pni_pair *pair, pni_target target) {
   const pni_technique_class *technique = light->technique;
+  bool empty = light->maps.fit.empty;
   pni_job job;
   pn_result result = pni_light_job(light, &job);
   if (result == PN_OK) result = pni_kept_get(job.gpu, &pair->kept, &technique->pair_kind, &job.pair_state);
@@ -19,8 +21,8 @@ static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pni_pai
   job.low = &pair->low;
   job.search = &pair->search;
   job.target = target;
-  pair->asked = !light->maps.fit.empty;
-  if (!pair->asked) {
+  if (!job.gpu->plan.on) pair->asked = !empty;
+  if (empty) {
     pni_pass pass = pni_job_pass(&job, NULL, (pni_program_key){0});
     result = pni_fill(job.gpu, "nothing casts", &pass, 1);
     pni_job_mark(&job, "visibility");
@@ -29,6 +31,46 @@ static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pni_pai
   result = pni_light_bind_block(light);
   if (result == PN_OK) result = pni_receiver_surfaces(receiver);
   return result == PN_OK ? technique->draw(&job) : result;
+}
+
+/* Where a result goes. */
+typedef struct {
+  pni_target host;  /* no texture: into the pair's image, of that format */
+  pni_format format;
+} destination;
+
+static pn_result make_visibility(pn_light *light, pn_receiver *receiver, pni_pair *pair, const destination *to) {
+  const pn_receiver_desc *view = &receiver->desc;
+  if (to->host.image.texture) return draw_visibility(light, receiver, pair, to->host);
+  pn_result result = pni_texture_shape(pni_light_gpu(light), &pair->image, "visibility", to->format, view->width,
+                                       view->height, 0, 1);
+  pni_target target = {pni_image_of(&pair->image, 0, 0), 0};
+  return result == PN_OK ? draw_visibility(light, receiver, pair, target) : result;
+}
+
+/* A failure leaves the pair's result, and what another technique kept with it. */
+static pn_result plan_visibility(pn_light *light, pn_receiver *receiver, pni_pair *pair, const destination *to) {
+  pni_gpu *gpu = pni_light_gpu(light);
+  pni_kept before = pair->kept;
+  bool other = before.state && before.kind != &light->technique->pair_kind;
+  if (other) pair->kept = (pni_kept){0};
+  pni_plan_begin(gpu, pair->drawn);
+  pn_result result = pni_plan_end(gpu, make_visibility(light, receiver, pair, to));
+  if (!other) return result;
+  pni_kept_free(gpu, result == PN_OK ? &before : &pair->kept, false);
+  if (result != PN_OK) pair->kept = before;
+  return result;
+}
+
+static pn_result timed_visibility(pn_light *light, pn_receiver *receiver, pni_pair *pair, const destination *to) {
+  pni_gpu *gpu = pni_light_gpu(light);
+  pn_result result = plan_visibility(light, receiver, pair, to);
+  if (result != PN_OK) return result;
+  if (!to->host.image.texture) pair->drawn = false;
+  pni_clock_start(gpu, &pair->clock);
+  result = make_visibility(light, receiver, pair, to);
+  pni_clock_end(gpu, &pair->clock);
+  return result;
 }
 
 static pn_result check_pair(pn_light *light, pn_receiver *receiver) {
@@ -45,29 +87,17 @@ static pni_format result_format(pn_format format) {
   return format == PN_FORMAT_R32F ? PNI_R32F : format == PN_FORMAT_R8 ? PNI_R8 : PNI_R16F;
 }
 
-static pn_result timed_visibility(pn_light *light, pn_receiver *receiver, pni_pair *pair, pni_target target) {
-  pni_gpu *gpu = pni_light_gpu(light);
-  pni_clock_start(gpu, &pair->clock);
-  pn_result result = draw_visibility(light, receiver, pair, target);
-  pni_clock_end(gpu, &pair->clock);
-  return result;
-}
-
 pn_result pn_visibility(pn_light *light, pn_receiver *receiver) {
   if (!light) return PN_ERROR_ARGUMENT;
   pn_result result = check_pair(light, receiver);
   if (result != PN_OK) return result;
   pni_pair *pair = pni_pair_get(&light->object, &receiver->object);
   if (!pair) return PN_ERROR_OUT_OF_MEMORY;
-  const pn_receiver_desc *view = &receiver->desc;
+  destination to = {.format = result_format(receiver->desc.format)};
   pni_enter(light->object.context);
   result = pni_gpu_check_lost(pni_light_gpu(light));
-  if (result == PN_OK)
-    result = pni_texture_shape(pni_light_gpu(light), &pair->image, "visibility", result_format(view->format),
-                               view->width, view->height, 0, 1);
-  pni_target target = {pni_image_of(&pair->image, 0, 0), 0};
-  if (result == PN_OK) result = timed_visibility(light, receiver, pair, target);
-  pair->drawn = result == PN_OK;
+  if (result == PN_OK) result = timed_visibility(light, receiver, pair, &to);
+  if (result == PN_OK) pair->drawn = true;
   return pni_leave(light->object.context, result);
 }
 
@@ -124,11 +154,11 @@ pn_result pn_visibility_into(pn_light *light, pn_receiver *receiver, const pn_ta
   if (result != PN_OK) return result;
   pni_pair *pair = pni_pair_get(&light->object, &receiver->object);
   if (!pair) return PN_ERROR_OUT_OF_MEMORY;
-  pni_target target;
+  destination to = {0};
   pni_enter(light->object.context);
   result = pni_gpu_check_lost(gpu);
-  if (result == PN_OK) result = host_target(gpu, &receiver->desc, into, &target);
-  if (result == PN_OK) result = timed_visibility(light, receiver, pair, target);
+  if (result == PN_OK) result = host_target(gpu, &receiver->desc, into, &to.host);
+  if (result == PN_OK) result = timed_visibility(light, receiver, pair, &to);
   return pni_leave(light->object.context, result);
 }
 

@@ -19,8 +19,8 @@
  *   - Objects live until their pn_..._destroy or their context's. GL objects of the host's are referenced, never freed:
  *     keep them alive as long as a description holds them.
  *   - Functions return PN_OK or a negative pn_result; the reason, with a stable message id, goes to the context's log.
- *     A call that fails leaves the object as it was, unless it says what becomes of it. Nothing aborts, nothing is
- *     printed, no GL error is raised, as long as the host's objects live that a description holds.
+ *     A call that fails leaves everything as it was, maps and results included: what can fail is made before the first
+ *     draw. Nothing aborts, nothing is printed, no GL error is raised.
  *   - The same input on the same device gives the same bits.
  *
  * Errors are listed as results, with the messages that tell them apart: "Errors: ARGUMENT (MESH_BOUNDS),
@@ -266,8 +266,7 @@ PN_API pn_result pn_mesh_add(pn_casters *casters, const pn_mesh_desc *desc, pn_m
 /* The mesh deformed. positions: new data of the same count in memory, of a mesh that came from memory, copied; or NULL
  * when the contents of the GL buffer changed. bounds: min and max in object space, six floats; NULL: computed (memory)
  * or unchanged (GL buffer). Its triangles are looked at anew: those without area in this pose are dropped.
- * Errors: ARGUMENT (MESH_UNKNOWN, MESH_POSITIONS, MESH_BOUNDS); OUT_OF_MEMORY, CONTEXT_LOST, which leave the mesh to be
- * moved again. */
+ * Errors: ARGUMENT (MESH_UNKNOWN, MESH_POSITIONS, MESH_BOUNDS), OUT_OF_MEMORY, CONTEXT_LOST. */
 PN_API pn_result pn_mesh_moved(pn_casters *casters, pn_mesh mesh, const pn_span *positions, const float *bounds);
 
 /* Removes the mesh and its instances. Errors: ARGUMENT (MESH_UNKNOWN). */
@@ -492,7 +491,7 @@ PN_API pn_result pn_prepare(pn_context *context, const char *spec, const pn_rece
  * next call; the casters may change or go meanwhile, but for the technique `average` (docs/techniques/average.md).
  * Warnings: LIGHT_ANGLE, CASTER_MESHES.
  * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (LIGHT_UNSET, RECEIVER_UNSET), UNSUPPORTED, OUT_OF_MEMORY, SHADER,
- * CONTEXT_LOST. ARGUMENT and NOT_READY leave the maps as they were; others may leave none. */
+ * CONTEXT_LOST. After a failure the maps of the last update stay, and pn_visibility goes on with them. */
 PN_API pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
                                 int visible_count);
 
@@ -500,8 +499,7 @@ PN_API pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t g
  * geometric horizon, and 1 where no part is (surfaces that face away, or lie behind a rectangle), on background, and
  * where the mask says so. May be called without a new pn_maps_update: the maps stay.
  * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (RECEIVER_UNSET, MAPS_STALE), UNSUPPORTED, OUT_OF_MEMORY, SHADER,
- * CONTEXT_LOST. A failure leaves the pair without a result, but for those that are noticed before anything is drawn,
- * ARGUMENT and NOT_READY. */
+ * CONTEXT_LOST. After a failure the last result stays. */
 PN_API pn_result pn_visibility(pn_light *light, pn_receiver *receiver);
 
 typedef struct {

@@ -96,6 +96,22 @@ static bool mirrors(const pni_matrix *a) {
          0;
 }
 
+/* The programs that they need: no more than two. */
+static pn_result plan_meshes(const pn_casters *casters, const pni_caster_draw *draw) {
+  bool any[2] = {false, false};
+  for (int i = 0; i < casters->instance_count; i++) {
+    const pni_instance_data *instance = &casters->instances[i];
+    if (draw->groups >> instance->group & 1) any[casters->meshes[instance->mesh].alpha_texture != 0] = true;
+  }
+  pn_result result = PN_OK;
+  for (int alpha = 0; alpha < 2 && result == PN_OK; alpha++) {
+    char defines[DEFINES];
+    pni_program_key key = caster_program(alpha, draw->peel != NULL, defines);
+    if (any[alpha]) result = pni_pass_program(&casters->object.context->gpu, &key);
+  }
+  return result;
+}
+
 static pn_result draw_meshes(pn_casters *casters, const pni_caster_draw *draw) {
   pni_gpu *gpu = &casters->object.context->gpu;
   for (int i = 0; i < casters->instance_count; i++) {
@@ -147,6 +163,7 @@ static pn_result call_host(pn_casters *casters, const pni_caster_draw *draw, int
 }
 
 pn_result pni_casters_draw_pass(pn_casters *casters, const pni_caster_draw *draw) {
+  if (casters->object.context->gpu.plan.on) return plan_meshes(casters, draw);
   pn_result result = draw_meshes(casters, draw);
   for (int group = 0; group < PN_GROUP_COUNT && result == PN_OK && !draw->without_host; group++)
     if (casters->callbacks[group].draw && (draw->groups >> group & 1)) result = call_host(casters, draw, group);

@@ -182,6 +182,7 @@ void pni_gpu_close(pni_gpu *gpu, bool abandon) {
     GL(gpu, DeleteFramebuffers)(1, &gpu->read_framebuffer);
     GL(gpu, DeleteSamplers)(1, &gpu->sampler_nearest);
   }
+  pni_free(gpu, gpu->plan.replaced);
   pni_free(gpu, gpu->shader_directory);
 }
 

@@ -55,6 +55,15 @@ typedef struct {
   bool blended;     /* blend functions were set */
 } pni_bound;
 
+/* A call that is planned before it draws (gl/plan.h). */
+typedef struct {
+  bool on;   /* nothing is drawn, everything is made */
+  bool keep; /* textures that are replaced come back if the plan fails */
+  bool made; /* a texture is new: that it can be drawn into is not known */
+  struct pni_replaced *replaced;
+  int count, capacity;
+} pni_plan;
+
 typedef struct pni_gpu {
   pni_gl_table gl;
   pni_gl_storage storage;
@@ -76,6 +85,7 @@ typedef struct pni_gpu {
   bool group_room;       /* for a debug group beside the host's */
   pni_program *programs;
 
+  pni_plan plan;
   pni_bound bound;
   const pni_host_state *host; /* what the host left, at entry; NULL: not read, or no longer so */
   const pni_program *program; /* of the pass that has begun */

@@ -97,7 +97,7 @@ pn_result pni_copy_depth(pni_gpu *gpu, pn_gl framebuffer, int x, int y, const pn
                    .height = to->height,
                    .depth_use = PNI_DEPTH_WRITE};
   pn_result result = pni_pass_begin(gpu, &pass);
-  if (result != PN_OK) return result;
+  if (result != PN_OK || gpu->plan.on) return result;
   bind_host(gpu, GL_READ_FRAMEBUFFER, framebuffer);
   GL(gpu, BlitFramebuffer)
   (x, y, x + to->width, y + to->height, 0, 0, to->width, to->height, GL_DEPTH_BUFFER_BIT, GL_NEAREST);

@@ -4,6 +4,7 @@
 
 #include "gl/host.h"
 #include "gl/inspect.h"
+#include "gl/plan.h"
 
 static pni_gpu *gpu_of(const pn_receiver *receiver) { return &receiver->object.context->gpu; }
 
@@ -166,12 +167,16 @@ static pn_result copy_multisample(pn_receiver *receiver, const pn_receiver_desc 
                    .height = d->height,
                    .depth_use = PNI_DEPTH_WRITE};
   result = pni_pass_begin(gpu, &pass);
-  if (result != PN_OK) return result;
+  if (result != PN_OK || gpu->plan.on) return result;
   /* Multisample textures have no sampling parameters, and no sampler object applies to them. */
   pni_set_host_texture(gpu, "pn_samples", d->depth_texture, PNI_SAMPLE_OWN);
   pni_set_ints(gpu, "pn_view", d->x, d->y, d->width, d->height);
   pni_draw_screen(gpu);
   return PN_OK;
+}
+
+static pn_result copy_depth(pn_receiver *receiver, const pn_receiver_desc *d, const pni_depth_source *source) {
+  return d->use_framebuffer ? copy_framebuffer(receiver, d, source) : copy_multisample(receiver, d);
 }
 
 static pn_result set_receiver(pn_receiver *receiver, pn_receiver_desc d) {
@@ -188,11 +193,14 @@ static pn_result set_receiver(pn_receiver *receiver, pn_receiver_desc d) {
   if (result == PN_OK && !invert_view(&d, source.at, &scene_from_clip, &scene_from_pixel))
     result = pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX, "projection times view has no inverse");
   if (result != PN_OK) return result;
-  bool multisample = d.depth_texture && source.samples > 0;
-  if (d.use_framebuffer) result = copy_framebuffer(receiver, &d, &source);
-  if (multisample) result = copy_multisample(receiver, &d);
+  bool copied = d.use_framebuffer || source.samples > 0;
+  if (copied) {
+    pni_plan_begin(gpu, receiver->set);
+    result = pni_plan_end(gpu, copy_depth(receiver, &d, &source));
+    if (result == PN_OK) result = copy_depth(receiver, &d, &source);
+  }
   if (result != PN_OK) return result;
-  receiver->copied = d.use_framebuffer || multisample;
+  receiver->copied = copied;
   receiver->desc = d;
   receiver->scene_from_clip = scene_from_clip;
   receiver->scene_from_pixel = scene_from_pixel;

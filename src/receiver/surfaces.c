@@ -60,7 +60,7 @@ pn_result pni_receiver_surfaces(pn_receiver *receiver) {
                    .width = d->width,
                    .height = d->height};
   result = pni_pass_begin(gpu, &pass);
-  if (result != PN_OK) return result;
+  if (result != PN_OK || gpu->plan.on) return result;
   set_depth(receiver, 1);
   pni_draw_screen(gpu);
   receiver->has_planes = true;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "gl/host.h"
+#include "gl/plan.h"
 #include "silhouettes/edges.h"
 
 /* PNI_EDGE_ROW and PNI_POSITION_ROW; a test holds them together. */
@@ -72,17 +73,17 @@ static pn_result copy_positions(pni_gpu *gpu, const pni_mesh_data *mesh, pni_mes
   pn_result result = pni_texture_shape(gpu, &e->positions, "mesh positions", PNI_R32F, PNI_POSITION_ROW,
                                        rows_of(count, PNI_POSITION_ROW), 0, 1);
   if (result != PN_OK) return result;
+  if (floats) {
+    pni_texture_write_from(gpu, &e->positions, span.buffer, span.offset, count);
+  } else {
+    float *read = read_positions(gpu, mesh);
+    if (!read) return PN_ERROR_OUT_OF_MEMORY;
+    pni_texture_write(gpu, &e->positions, read, count);
+    pni_free(gpu, read);
+  }
   e->stride = (int)stride;
   e->current = true;
   e->pose = mesh->pose;
-  if (floats) {
-    pni_texture_write_from(gpu, &e->positions, span.buffer, span.offset, count);
-    return PN_OK;
-  }
-  float *read = read_positions(gpu, mesh);
-  if (!read) return PN_ERROR_OUT_OF_MEMORY;
-  pni_texture_write(gpu, &e->positions, read, count);
-  pni_free(gpu, read);
   return PN_OK;
 }
 
@@ -148,10 +149,12 @@ static pn_result make_edges(pni_gpu *gpu, pni_mesh_data *mesh) {
 pn_result pni_mesh_edges_get(pni_gpu *gpu, pni_mesh_data *mesh, pni_mesh_edges **out) {
   *out = NULL;
   if (!mesh->draw_count && !mesh->kept_indices) return PN_OK;
+  bool keep = pni_plan_pause(gpu); /* they belong to the mesh */
   pn_result result = mesh->kept.state ? PN_OK : make_edges(gpu, mesh);
   pni_mesh_edges *edges = mesh->kept.state;
-  if (result != PN_OK || !edges->count) return result;
-  if (!edges->current || edges->pose != mesh->pose) result = copy_positions(gpu, mesh, edges);
-  if (result == PN_OK) *out = edges;
+  bool some = result == PN_OK && edges->count;
+  if (some && (!edges->current || edges->pose != mesh->pose)) result = copy_positions(gpu, mesh, edges);
+  if (some && result == PN_OK) *out = edges;
+  pni_plan_resume(gpu, keep);
   return result;
 }
