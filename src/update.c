@@ -15,7 +15,7 @@ static pn_result find_frusta(pn_light *light, pn_receiver *const *receivers, int
   light->has_visible = wanted && count > 0;
   light->visible = pni_region_empty();
   for (int i = 0; i < count && light->has_visible; i++) {
-    if (!receivers[i] || !receivers[i]->set)
+    if (!receivers[i]->set)
       return pni_fail(pni_light_gpu(light), PN_ERROR_NOT_READY, PN_MESSAGE_RECEIVER_UNSET,
                       "visible receiver %d was never set", i);
     pni_receiver_frustum(receivers[i], &light->frame, &light->visible);
@@ -27,8 +27,12 @@ static pn_result find_frusta(pn_light *light, pn_receiver *const *receivers, int
 static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, int count) {
   light->visible = pni_region_empty();
   pn_result result = PN_OK;
-  for (int i = 0; i < count && result == PN_OK; i++)
+  for (int i = 0; i < count && result == PN_OK; i++) {
+    result = pni_receiver_open(receivers[i]);
+    if (result != PN_OK) break;
     result = pni_receiver_bounds(receivers[i], &light->frame, &light->visible);
+    pni_receiver_close(receivers[i]);
+  }
   pni_clock_mark(pni_light_gpu(light), &light->clock, "fit");
   return result;
 }
@@ -161,22 +165,34 @@ static pn_result update_maps(pn_light *light, pn_casters *casters, uint32_t grou
   return result;
 }
 
+static pn_result check_arguments(const pn_light *light, const pn_casters *casters, pn_receiver *const *visible,
+                                 int visible_count) {
+  pni_gpu *gpu = pni_light_gpu(light);
+  const pn_context *context = light->object.context;
+  if (!casters) return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_maps_update: casters is NULL");
+  if (casters->object.context != context)
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
+                    "pn_maps_update: the casters are of another context");
+  if (visible_count < 0 || (visible_count > 0 && !visible))
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
+                    "pn_maps_update: visible is NULL, or a number of %d", visible_count);
+  for (int i = 0; i < visible_count; i++)
+    if (!visible[i] || visible[i]->object.context != context)
+      return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_maps_update: visible[%d] is %s", i,
+                      visible[i] ? "of another context" : "NULL");
+  if (!light->set) return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_LIGHT_UNSET, "pn_light_set comes first");
+  return PN_OK;
+}
+
 pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
                          int visible_count) {
   if (!light) return PN_ERROR_ARGUMENT;
   pni_gpu *gpu = pni_light_gpu(light);
-  if (!casters || (visible_count > 0 && !visible) || visible_count < 0)
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_maps_update: casters or visible is NULL");
-  bool ours = casters->object.context == light->object.context;
-  for (int i = 0; i < visible_count; i++)
-    ours = ours && (!visible[i] || visible[i]->object.context == light->object.context);
-  if (!ours)
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
-                    "pn_maps_update: casters or a receiver of another context");
-  if (!light->set) return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_LIGHT_UNSET, "pn_light_set comes first");
+  pn_result result = check_arguments(light, casters, visible, visible_count);
+  if (result != PN_OK) return result;
   pni_enter(light->object.context);
   pni_clock_start(gpu, &light->clock);
-  pn_result result = update_maps(light, casters, groups, visible, visible_count);
+  result = update_maps(light, casters, groups, visible, visible_count);
   pni_clock_end(gpu, &light->clock);
   return pni_leave(light->object.context, result);
 }

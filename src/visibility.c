@@ -35,15 +35,15 @@ static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pni_pai
 
 /* Where a result goes. */
 typedef struct {
-  pni_target host;  /* no texture: into the pair's image, of that format */
+  pni_target host; /* no texture: into the pair's image, of that format */
   pni_format format;
 } destination;
 
 static pn_result make_visibility(pn_light *light, pn_receiver *receiver, pni_pair *pair, const destination *to) {
   const pn_receiver_desc *view = &receiver->desc;
   if (to->host.image.texture) return draw_visibility(light, receiver, pair, to->host);
-  pn_result result = pni_texture_shape(pni_light_gpu(light), &pair->image, "visibility", to->format, view->width,
-                                       view->height, 0, 1);
+  pn_result result =
+      pni_texture_shape(pni_light_gpu(light), &pair->image, "visibility", to->format, view->width, view->height, 0, 1);
   pni_target target = {pni_image_of(&pair->image, 0, 0), 0};
   return result == PN_OK ? draw_visibility(light, receiver, pair, target) : result;
 }
@@ -64,19 +64,24 @@ static pn_result plan_visibility(pn_light *light, pn_receiver *receiver, pni_pai
 
 static pn_result timed_visibility(pn_light *light, pn_receiver *receiver, pni_pair *pair, const destination *to) {
   pni_gpu *gpu = pni_light_gpu(light);
-  pn_result result = plan_visibility(light, receiver, pair, to);
+  pn_result result = pni_receiver_open(receiver);
   if (result != PN_OK) return result;
-  if (!to->host.image.texture) pair->drawn = false;
-  pni_clock_start(gpu, &pair->clock);
-  result = make_visibility(light, receiver, pair, to);
-  pni_clock_end(gpu, &pair->clock);
+  result = plan_visibility(light, receiver, pair, to);
+  if (result == PN_OK) {
+    if (!to->host.image.texture) pair->drawn = false;
+    pni_clock_start(gpu, &pair->clock);
+    result = make_visibility(light, receiver, pair, to);
+    pni_clock_end(gpu, &pair->clock);
+  }
+  pni_receiver_close(receiver);
   return result;
 }
 
 static pn_result check_pair(pn_light *light, pn_receiver *receiver) {
   pni_gpu *gpu = pni_light_gpu(light);
-  if (!receiver || receiver->object.context != light->object.context)
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "receiver is NULL, or of another context");
+  if (!receiver) return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "receiver is NULL");
+  if (receiver->object.context != light->object.context)
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "the receiver is of another context");
   if (!receiver->set)
     return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_RECEIVER_UNSET, "pn_receiver_set comes first");
   if (!light->maps.ready) return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE, "pn_maps_update comes first");
@@ -130,17 +135,45 @@ pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver, pn_so
 
 /* ---- into the host's texture ------------------------------------------------------------------------------------- */
 
-static pn_result host_target(pni_gpu *gpu, const pn_receiver_desc *view, const pn_target *target, pni_target *out) {
+/* What is read while visibility is drawn must not be drawn into. */
+static const char *read_as(pn_light *light, pn_receiver *receiver, pn_gl texture) {
+  const pn_receiver_desc *view = &receiver->desc;
+  pn_image image;
+  if (texture == view->depth_texture) return "the receiver's depth";
+  if (texture == view->normal_texture) return "the receiver's normals";
+  if (texture == view->mask_texture) return "the receiver's mask";
+  for (int i = 0; pn_debug_image(light, receiver, i, NULL, &image); i++)
+    if (image.texture == texture) return "the library's own";
+  return NULL;
+}
+
+static pn_result fail_target(pni_gpu *gpu, pn_gl texture, const char *what) {
+  return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RESULT_TARGET, "target texture %u %s", texture, what);
+}
+
+static pn_result host_target(pn_light *light, pn_receiver *receiver, const pn_target *target, pni_target *out) {
+  pni_gpu *gpu = pni_light_gpu(light);
+  const pn_receiver_desc *view = &receiver->desc;
   pni_target_kind kind;
-  bool sound = pni_inspect_target(gpu, target->texture, &kind) && kind.channels != 0;
-  if (!sound || kind.width < view->width || kind.height < view->height || target->layer < 0 ||
-      target->layer >= kind.layers)
+  if (!target->texture || !pni_texture_exists(gpu, target->texture))
+    return fail_target(gpu, target->texture, "does not exist");
+  const char *read = read_as(light, receiver, target->texture);
+  if (read)
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RESULT_TARGET, "target texture %u is %s", target->texture, read);
+  if (!pni_inspect_target(gpu, target->texture, &kind))
+    return fail_target(gpu, target->texture, "is no 2D texture or 2D array that can be drawn into");
+  if (!kind.channels) return fail_target(gpu, target->texture, "has no colours, or integers");
+  if (kind.width < view->width || kind.height < view->height)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RESULT_TARGET,
-                    "texture %u cannot take a view of %d x %d in layer %d", target->texture, view->width, view->height,
-                    target->layer);
+                    "target texture %u has %d x %d texels, the view %d x %d", target->texture, kind.width, kind.height,
+                    view->width, view->height);
+  if (target->layer < 0 || target->layer >= kind.layers)
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RESULT_TARGET, "target texture %u has no layer %d: layers 0..%d",
+                    target->texture, target->layer, kind.layers - 1);
   if (target->channels & ~kind.channels)
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RESULT_TARGET, "texture %u has not all of the channels 0x%x",
-                    target->texture, (unsigned)target->channels);
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RESULT_TARGET,
+                    "target texture %u has the channels 0x%x, not all of 0x%x", target->texture,
+                    (unsigned)kind.channels, (unsigned)target->channels);
   *out = (pni_target){{target->texture, kind.array, 0, target->layer}, target->channels};
   return PN_OK;
 }
@@ -157,7 +190,7 @@ pn_result pn_visibility_into(pn_light *light, pn_receiver *receiver, const pn_ta
   destination to = {0};
   pni_enter(light->object.context);
   result = pni_gpu_check_lost(gpu);
-  if (result == PN_OK) result = host_target(gpu, &receiver->desc, into, &to.host);
+  if (result == PN_OK) result = host_target(light, receiver, into, &to.host);
   if (result == PN_OK) result = timed_visibility(light, receiver, pair, &to);
   return pni_leave(light->object.context, result);
 }

@@ -125,7 +125,7 @@ typedef enum {
   PN_MESSAGE_LIGHT_SIZE,
   PN_MESSAGE_LIGHT_RANGE,             /* near distance or range negative, not finite, or near >= range */
   PN_MESSAGE_LIGHT_TEXTURE,           /* a textured light, which this version does not do yet */
-  PN_MESSAGE_LIGHT_FIT,               /* unknown fit, or its bounds inverted or not finite */
+  PN_MESSAGE_LIGHT_FIT,               /* unknown fit, or its bounds a point, inverted or not finite */
   PN_MESSAGE_LIGHT_MAP,               /* map size outside 1..8192 or beyond the device's limit */
   PN_MESSAGE_LIGHT_ANGLE,             /* warning: the map would open past 170 degrees and is clamped there */
   PN_MESSAGE_LIGHT_UNSET,             /* pn_light_set has not succeeded yet */
@@ -144,6 +144,10 @@ typedef enum {
    * other */
   PN_MESSAGE_MESH_EDGES,
   PN_MESSAGE_CASTER_MESHES,           /* warning: the technique needs meshes, and some casters have none */
+  PN_MESSAGE_DEBUG_FLAGS,             /* pn_debug does not know all of its flags */
+  /* the description's depth range is impossible; or, a warning once a receiver: glDepthRange is not 0 to 1, and the
+   * description has none */
+  PN_MESSAGE_RECEIVER_RANGE,
   PN_MESSAGE_COUNT
 } pn_message;
 
@@ -345,6 +349,7 @@ typedef struct {
   float projection[16];    /* clip from eye */
   int depth_zero_to_one;   /* nonzero: the projection maps to [0, 1] (glClipControl with GL_ZERO_TO_ONE) */
   int reversed_depth;      /* nonzero: near is 1, and depth 0 means that nothing was drawn; else depth 1 does */
+  float depth_range[2];    /* glDepthRange's near and far when depth was drawn, in [0, 1]; both 0 = 0 to 1 */
   /* 0: the tangent plane comes from depth. Same size and view rectangle as the depth texture (framebuffer: as the
    * view) */
   pn_gl normal_texture;
@@ -401,13 +406,13 @@ typedef struct {
   float direction[3]; /* where it shines; any length but zero */
   /* the rectangle's first axis; made perpendicular to direction. Zero: derived from up, see pn_light_frame */
   float axis_u[3];
-  float half_u, half_v; /* rectangle: half extents, scene units. Sun: tangents of the angular radii */
+  float half_u, half_v; /* rectangle: half extents, scene units, to 1e9. Sun: tangents of the angular radii */
   /* Casters nearer than this are taken to be this far; snapped down, as bounds are. 0: from the casters */
   float near_distance;
   float range;          /* instances wholly beyond this distance cast nothing. 0: no limit */
   pn_gl texture;        /* radiance over the light: not yet, must be 0 */
   pn_fit fit;
-  float fit_bounds[6];  /* PN_FIT_GIVEN: min and max, scene space */
+  float fit_bounds[6];  /* PN_FIT_GIVEN: min and max, scene space; not a point */
   int map_width, map_height; /* texels of each depth map, 1..8192, any number; 0 = 512, height 0 = width */
 } pn_light_desc;
 
@@ -545,7 +550,8 @@ typedef struct {
  * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (MAPS_STALE): the last one had another technique, or no shadow. */
 PN_API pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver, pn_soft_shadow_map *out);
 
-/* Makes techniques tell what they did, as debug images. flags: the sum of what is wanted, 0 at first. Errors: none.
+/* Makes techniques tell what they did, as debug images. flags: the sum of what is wanted, 0 at first.
+ * Errors: ARGUMENT (DEBUG_FLAGS).
  * PN_DEBUG_SEARCH  "search", of techniques that search: red = class (0 no map was asked, 1 lit, 2 umbra, 3 penumbra),
  *                  green = blocks visited, blue = primitives covered, alpha = texels in the search windows; costs a
  *                  second colour target. Of technique `ssm`: "covered", in the layers of the soft shadow map, how many

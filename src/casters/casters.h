@@ -27,6 +27,7 @@ struct pn_casters {
   pni_instance_data *instances;
   int instance_count, instance_capacity;
   uint32_t next_id;
+  unsigned checked; /* the number of the plan in which alpha textures were looked at */
   pni_callback callbacks[PN_GROUP_COUNT];
 };
 

@@ -3,6 +3,9 @@
 
 #include <stdio.h>
 
+#include "gl/host.h"
+#include "gl/inspect.h"
+
 enum { DEFINES = 64 };
 
 static pni_program_key caster_program(bool alpha, bool peel, char defines[DEFINES]) {
@@ -69,7 +72,8 @@ static pn_result begin_mesh(pni_gpu *gpu, const pni_mesh_data *mesh, const place
   if (alpha) {
     pni_set_ints(gpu, "pn_alpha_channel", mesh->alpha_channel, 0, 0, 0);
     pni_set_floats(gpu, "pn_alpha_cutoff", (const float[4]){mesh->alpha_cutoff});
-    pni_set_host_texture(gpu, "pn_alpha", mesh->alpha_texture, PNI_SAMPLE_OWN);
+    pni_set_host_texture(gpu, "pn_alpha", mesh->alpha_texture,
+                         mesh->alpha_complete ? PNI_SAMPLE_OWN : PNI_SAMPLE_LINEAR);
   }
   pni_pass_clockwise(gpu, p->clockwise);
   return PN_OK;
@@ -96,14 +100,32 @@ static bool mirrors(const pni_matrix *a) {
          0;
 }
 
+/* Hosts delete textures; one look a call. */
+static pn_result check_alpha_textures(pn_casters *casters, uint32_t groups) {
+  pni_gpu *gpu = &casters->object.context->gpu;
+  if (casters->checked == gpu->plan.number) return PN_OK;
+  casters->checked = gpu->plan.number;
+  const pni_mesh_data *last = NULL;
+  for (int i = 0; i < casters->instance_count; i++) {
+    const pni_instance_data *instance = &casters->instances[i];
+    const pni_mesh_data *mesh = &casters->meshes[instance->mesh];
+    if (!(groups >> instance->group & 1) || !mesh->alpha_texture || mesh == last) continue;
+    last = mesh;
+    if (!pni_texture_is_2d(gpu, mesh->alpha_texture))
+      return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MESH_ALPHA,
+                      "alpha texture %u of mesh %u is gone, or no longer a 2D texture", mesh->alpha_texture, mesh->id);
+  }
+  return PN_OK;
+}
+
 /* The programs that they need: no more than two. */
-static pn_result plan_meshes(const pn_casters *casters, const pni_caster_draw *draw) {
+static pn_result plan_meshes(pn_casters *casters, const pni_caster_draw *draw) {
   bool any[2] = {false, false};
   for (int i = 0; i < casters->instance_count; i++) {
     const pni_instance_data *instance = &casters->instances[i];
     if (draw->groups >> instance->group & 1) any[casters->meshes[instance->mesh].alpha_texture != 0] = true;
   }
-  pn_result result = PN_OK;
+  pn_result result = any[1] ? check_alpha_textures(casters, draw->groups) : PN_OK;
   for (int alpha = 0; alpha < 2 && result == PN_OK; alpha++) {
     char defines[DEFINES];
     pni_program_key key = caster_program(alpha, draw->peel != NULL, defines);

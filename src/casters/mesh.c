@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "gl/host.h"
+#include "gl/host_texture.h"
 #include "gl/inspect.h"
 
 /* ---- checks ------------------------------------------------------------------------------------------------------ */
@@ -346,6 +347,11 @@ static void describe(pni_mesh_data *mesh, const pn_mesh_desc *d) {
   mesh->clockwise = d->clockwise != 0;
 }
 
+/* Under GL's own default a texture without mipmaps would be read as black. */
+static void look_at_alpha(pni_gpu *gpu, pni_mesh_data *mesh) {
+  if (mesh->alpha_texture) mesh->alpha_complete = pni_host_texture_complete(gpu, mesh->alpha_texture);
+}
+
 static void given_box(pni_mesh_data *mesh, const float min[3], const float max[3]) {
   memcpy(mesh->boxes[0].min, min, 12);
   memcpy(mesh->boxes[0].max, max, 12);
@@ -360,6 +366,7 @@ pn_result pni_mesh_build(pni_gpu *gpu, const pn_mesh_desc *d, pni_mesh_data *mes
   mesh->boxes = pni_reallocate(gpu, NULL, (PNI_BOXES_MAX + 1) * sizeof *mesh->boxes);
   if (!mesh->boxes) return PN_ERROR_OUT_OF_MEMORY;
   pni_vertices_make(gpu, &mesh->vertices);
+  look_at_alpha(gpu, mesh);
   bool in_memory = d->positions.data && !d->indices.buffer;
   pn_result result = in_memory ? take_triangles(gpu, mesh, d) : bind_host_indices(gpu, mesh, d);
   if (result == PN_OK && d->positions.data && !in_memory) box_vertices(mesh, &d->positions);

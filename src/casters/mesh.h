@@ -22,6 +22,7 @@ typedef struct pni_mesh_data {
   pni_buffer own_positions, own_indices, own_texcoords; /* none where the host owns it */
   size_t draw_count;                                    /* vertices or indices drawn */
   pn_gl alpha_texture;
+  bool alpha_complete; /* as its own parameters want it */
   int alpha_channel;
   float alpha_cutoff;
   bool clockwise;

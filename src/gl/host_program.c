@@ -13,7 +13,9 @@ static void set_units(pni_gpu *gpu, pn_gl program, const pni_host_sampler *sampl
   GL(gpu, UseProgram)(program);
   for (int i = 0; i < count; i++)
     GL(gpu, Uniform1i)(GL(gpu, GetUniformLocation)(program, samplers[i].name), samplers[i].unit);
-  GL(gpu, UseProgram)((GLuint)before);
+  /* A program that the host has deleted lives only as long as it is current. */
+  if (before && GL(gpu, IsProgram)((GLuint)before)) GL(gpu, UseProgram)((GLuint)before);
+  else GL(gpu, UseProgram)(0);
 }
 
 static void bind_textures(pni_gpu *gpu, const pni_host_sampler *samplers, int count) {

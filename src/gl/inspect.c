@@ -72,12 +72,29 @@ static void bind_host(pni_gpu *gpu, GLenum target, pn_gl framebuffer) {
   *(target == GL_READ_FRAMEBUFFER ? &gpu->bound.read_framebuffer : &gpu->bound.framebuffer) = framebuffer;
 }
 
+/* Its size, which framebuffers themselves cannot be asked for; as large as there are textures where it is not told. */
+static void read_size(pni_gpu *gpu, pn_gl framebuffer, pni_depth_source *out) {
+  GLenum target = GL_READ_FRAMEBUFFER, point = GL_DEPTH_ATTACHMENT;
+  out->width = out->height = gpu->can.texture_size_max;
+  if (!framebuffer || !gpu->can.targets) return;
+  GLuint name = (GLuint)attachment_parameter(gpu, target, point, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME);
+  if (attachment_parameter(gpu, target, point, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) == GL_RENDERBUFFER) {
+    GL(gpu, GetNamedRenderbufferParameteriv)(name, GL_RENDERBUFFER_WIDTH, &out->width);
+    GL(gpu, GetNamedRenderbufferParameteriv)(name, GL_RENDERBUFFER_HEIGHT, &out->height);
+  } else {
+    GLint level = attachment_parameter(gpu, target, point, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL);
+    GL(gpu, GetTextureLevelParameteriv)(name, level, GL_TEXTURE_WIDTH, &out->width);
+    GL(gpu, GetTextureLevelParameteriv)(name, level, GL_TEXTURE_HEIGHT, &out->height);
+  }
+}
+
 bool pni_inspect_framebuffer(pni_gpu *gpu, pn_gl framebuffer, pni_depth_source *out) {
   pni_ready(gpu);
   bind_host(gpu, GL_READ_FRAMEBUFFER, framebuffer);
   GLenum status = GL(gpu, CheckFramebufferStatus)(GL_READ_FRAMEBUFFER);
   GLenum point = framebuffer ? GL_DEPTH_ATTACHMENT : GL_DEPTH;
   if (status != GL_FRAMEBUFFER_COMPLETE || !read_depth(gpu, GL_READ_FRAMEBUFFER, point, out)) return false;
+  read_size(gpu, framebuffer, out);
   bind_host(gpu, GL_DRAW_FRAMEBUFFER, framebuffer);
   read_samples(gpu, out);
   return true;

@@ -7,6 +7,7 @@
 /* Depth of a texture or a framebuffer. */
 typedef struct {
   int depth_bits, stencil_bits, samples;
+  int width, height; /* of a framebuffer's depth, or more where that cannot be found out */
   bool is_float;
   float at[2]; /* where in a pixel its depth was taken: sample 0 lies beside the pixel's centre */
 } pni_depth_source;

@@ -193,7 +193,8 @@ void pni_set_texture(pni_gpu *gpu, const char *name, const pni_texture *texture)
 }
 
 void pni_set_host_texture(pni_gpu *gpu, const char *name, pn_gl texture, pni_sampling sampling) {
-  set_sampler(gpu, name, texture, sampling == PNI_SAMPLE_OWN ? 0 : gpu->sampler_nearest);
+  const pn_gl samplers[] = {gpu->sampler_nearest, 0, gpu->sampler_linear};
+  set_sampler(gpu, name, texture, samplers[sampling]);
 }
 
 /* A sampler that was given nothing reads nothing: not what another pass left, which may be what this one draws to. */

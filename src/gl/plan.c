@@ -6,6 +6,7 @@ void pni_plan_begin(pni_gpu *gpu, bool keep) {
   gpu->plan.on = true;
   gpu->plan.keep = keep;
   gpu->plan.made = false;
+  gpu->plan.number++;
 }
 
 pn_result pni_plan_end(pni_gpu *gpu, pn_result result) {

@@ -102,7 +102,8 @@ static void APIENTRY on_gen_textures(GLsizei count, GLuint *out) {
 }
 
 static void attach(GLenum target, GLenum point, GLuint texture) {
-  if (target == GL_DRAW_FRAMEBUFFER) f.attached[point == GL_DEPTH_ATTACHMENT ? 2 : point - GL_COLOR_ATTACHMENT0] = texture;
+  if (target == GL_DRAW_FRAMEBUFFER)
+    f.attached[point == GL_DEPTH_ATTACHMENT ? 2 : point - GL_COLOR_ATTACHMENT0] = texture;
 }
 
 static void APIENTRY on_framebuffer_texture(GLenum target, GLenum point, GLuint texture, GLint level) {

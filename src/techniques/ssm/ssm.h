@@ -18,8 +18,8 @@ typedef struct {
   pni_texture bounds, bound;  /* of the error, when debugging: the map, and as the camera sees it */
   float *scratch;             /* for lists made on the CPU, during a draw */
   size_t scratch_floats;
-  pn_soft_shadow_map shown;   /* of the last draw; no texture: none */
-  bool warned;                /* the last draw had something to warn of */
+  pn_soft_shadow_map shown; /* of the last draw; no texture: none */
+  bool warned;              /* the last draw had something to warn of */
 } pni_ssm_state;
 
 /* What the GPU counts: vertices of a list's micropatches, and of the rows of its texture. */
