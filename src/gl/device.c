@@ -103,7 +103,9 @@ static void read_capabilities(pni_gpu *gpu) {
   function =
       !gpu->desc.get_proc_address || (gpu->storage.GetTextureParameteriv && gpu->storage.GetTextureLevelParameteriv &&
                                       gpu->storage.GetNamedRenderbufferParameteriv);
-  can->targets = function && (can->version >= 45 || has_extension(gpu, "GL_ARB_direct_state_access"));
+  can->by_name = function && (can->version >= 45 || has_extension(gpu, "GL_ARB_direct_state_access"));
+  /* Mesa refuses GL_TEXTURE_TARGET in compatibility contexts. */
+  can->targets = can->by_name && !can->compatibility;
   function = !gpu->desc.get_proc_address ||
              (gpu->storage.ObjectLabel && gpu->storage.PushDebugGroup && gpu->storage.PopDebugGroup);
   can->labels = function && (can->version >= 43 || has_extension(gpu, "GL_KHR_debug"));

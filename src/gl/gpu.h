@@ -21,7 +21,8 @@ typedef struct {
   GLenum switches[PNI_SWITCHES]; /* that there are, of those that change what is drawn (gl/device.c) */
   int switch_count;
   bool stencil_texturing; /* 4.3 or ARB_stencil_texturing: depth-stencil textures can be read as stencil */
-  bool targets;           /* 4.5 or ARB_direct_state_access: textures tell what kind they are */
+  bool by_name;           /* 4.5 or ARB_direct_state_access: textures are asked without being bound */
+  bool targets;           /* and tell what kind they are */
   bool labels;            /* 4.3 or KHR_debug: objects and passes have names */
   int texture_size_max, layers_max, draw_buffers, subpixel_bits, clip_distances, sample_mask_words, debug_groups;
 } pni_capabilities;

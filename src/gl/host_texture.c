@@ -8,24 +8,47 @@ static const GLint identity[4] = {GL_RED, GL_GREEN, GL_BLUE, GL_ALPHA};
 
 /* By name where the device can; else the texture is bound. */
 static void get(pni_gpu *gpu, const pni_host_texture *t, GLenum name, GLint *out) {
-  if (gpu->can.targets) GL(gpu, GetTextureParameteriv)(t->texture, name, out);
+  if (gpu->can.by_name) GL(gpu, GetTextureParameteriv)(t->texture, name, out);
   else GL(gpu, GetTexParameteriv)(t->target, name, out);
 }
 
 static GLint get_level(pni_gpu *gpu, const pni_host_texture *t, GLint level, GLenum name) {
   GLint value = 0;
-  if (gpu->can.targets) GL(gpu, GetTextureLevelParameteriv)(t->texture, level, name, &value);
+  if (gpu->can.by_name) GL(gpu, GetTextureLevelParameteriv)(t->texture, level, name, &value);
   else GL(gpu, GetTexLevelParameteriv)(t->target, level, name, &value);
   return value;
 }
 
-/* Binding a texture to another one's target would be an error. */
-static bool is_kind(pni_gpu *gpu, const pni_host_texture *t) {
-  GLint target = GL_NONE;
-  if (!t->texture || !GL(gpu, IsTexture)(t->texture)) return false;
-  if (!gpu->can.targets) return true;
-  GL(gpu, GetTextureParameteriv)(t->texture, GL_TEXTURE_TARGET, &target);
-  return (GLenum)target == t->target;
+bool pni_texture_exists(pni_gpu *gpu, pn_gl texture) { return texture && GL(gpu, IsTexture)(texture); }
+
+enum { PENDING_MOST = 64 }; /* a lost context has errors without end */
+
+static void drop_errors(pni_gpu *gpu) {
+  for (int i = 0; i < PENDING_MOST && GL(gpu, GetError)() != GL_NO_ERROR; i++) {
+  }
+}
+
+/* Where textures cannot be asked for their kind: by binding it, which is an error that nobody is to hear of. */
+static bool try_target(pni_gpu *gpu, pn_gl texture, GLenum target) {
+  pni_ready(gpu);
+  pni_bind_scratch(gpu, target, 0);
+  bool heard = gpu->can.labels && GL(gpu, IsEnabled)(GL_DEBUG_OUTPUT);
+  if (heard) GL(gpu, Disable)(GL_DEBUG_OUTPUT);
+  drop_errors(gpu);
+  GL(gpu, BindTexture)(target, texture);
+  bool is = GL(gpu, GetError)() == GL_NO_ERROR;
+  GL(gpu, BindTexture)(target, 0);
+  drop_errors(gpu);
+  if (heard) GL(gpu, Enable)(GL_DEBUG_OUTPUT);
+  return is;
+}
+
+bool pni_texture_is(pni_gpu *gpu, pn_gl texture, GLenum target) {
+  GLint is = GL_NONE;
+  if (!pni_texture_exists(gpu, texture)) return false;
+  if (!gpu->can.targets) return try_target(gpu, texture, target);
+  GL(gpu, GetTextureParameteriv)(texture, GL_TEXTURE_TARGET, &is);
+  return (GLenum)is == target;
 }
 
 static void bind(pni_gpu *gpu, const pni_host_texture *t) {
@@ -58,10 +81,10 @@ static void set_parameters(pni_gpu *gpu, const pni_host_texture *t, GLint base, 
 bool pni_host_texture_open(pni_gpu *gpu, pn_gl texture, bool multisample, pni_host_texture *out) {
   pni_host_texture t = {.texture = texture, .target = multisample ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D};
   *out = (pni_host_texture){0};
-  if (!is_kind(gpu, &t)) return false;
-  if (!gpu->can.targets) bind(gpu, &t);
+  if (!pni_texture_is(gpu, texture, t.target)) return false;
+  if (!gpu->can.by_name) bind(gpu, &t);
   read_parameters(gpu, &t);
-  if (!gpu->can.targets) pni_bind_scratch(gpu, t.target, 0);
+  if (!gpu->can.by_name) pni_bind_scratch(gpu, t.target, 0);
   set_parameters(gpu, &t, 0, identity, GL_DEPTH_COMPONENT);
   *out = t;
   return true;

@@ -13,8 +13,12 @@ typedef struct {
   GLint base, swizzle[4], stencil_mode; /* as the host left them */
 } pni_host_texture;
 
-/* Looks at the texture and makes its parameters neutral. False: there is no such texture, or it is of another kind, as
- * far as the device can tell; nothing was changed then. */
+bool pni_texture_exists(pni_gpu *gpu, pn_gl texture);
+/* Whether there is such a texture, of that kind: found out without an error. */
+bool pni_texture_is(pni_gpu *gpu, pn_gl texture, GLenum target);
+
+/* Looks at the texture and makes its parameters neutral. False: there is no such texture, or it is of another kind;
+ * nothing was changed then. */
 bool pni_host_texture_open(pni_gpu *gpu, pn_gl texture, bool multisample, pni_host_texture *out);
 /* Sets back what was not neutral. Several that may be the same texture are closed in the opposite order. */
 void pni_host_texture_close(pni_gpu *gpu, pni_host_texture *texture);

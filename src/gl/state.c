@@ -83,7 +83,7 @@ void pni_state_save(pni_gpu *gpu, pni_host_state *state) {
 /* ---- restoring --------------------------------------------------------------------------------------------------- */
 
 /* Names that no longer exist are not bound again. What the library itself deletes are textures; but a program that its
- * host has deleted lives only as long as it is current; and in a scope, or in a callback, hosts delete what they like. */
+ * host has deleted lives only as long as it is current; and in a scope, or a callback, hosts delete what they like. */
 
 static GLuint living_texture(pni_gpu *gpu, GLint texture) {
   return texture && GL(gpu, IsTexture)((GLuint)texture) ? (GLuint)texture : 0;

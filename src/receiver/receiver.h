@@ -30,9 +30,8 @@ float pni_receiver_background(const pn_receiver *receiver);
 /* Size of the image that visibility is computed at: 1/scale, rounded up. */
 void pni_receiver_low_size(const pn_receiver *receiver, int *width, int *height);
 
-/* Before and after the host's textures are read: whether they are still what pn_receiver_set saw is looked at, and their
- * parameters are made neutral. After a failure there is nothing to close. Receivers are open one at a time, but for
- * those inside another. */
+/* Before and after the host's textures are read: whether they are still what pn_receiver_set saw is looked at, and
+ * their parameters are made neutral. After a failure there is nothing to close. One receiver is open at a time. */
 pn_result pni_receiver_open(pn_receiver *receiver);
 void pni_receiver_close(pn_receiver *receiver);
 
