@@ -63,8 +63,12 @@ static void fit_light(pn_light *light, const pn_casters *casters, const pni_maps
 static pni_map_draw tile_draw(const pn_light *light, pn_casters *casters, const pni_maps_want *want, int tile) {
   const pni_fit_result *fit = &light->maps.fit;
   pni_fit_request request = fit_request(light, want);
-  pni_map_draw draw = {
-      .frame = &light->frame, .casters = casters, .groups = light->groups, .w_near = fit->w_near, .w_far = fit->w_far};
+  pni_map_draw draw = {.frame = &light->frame,
+                       .casters = casters,
+                       .groups = light->groups,
+                       .w_near = fit->w_near,
+                       .w_far = fit->w_far,
+                       .range = pni_fit_range(&request)};
   memcpy(draw.bounds, fit->tile[tile], sizeof draw.bounds);
   if (want->focus > 0) draw.later = pni_fit_focus(&request, fit, tile, want->focus);
   return draw;

@@ -136,9 +136,12 @@ static pn_result draw_layer(const drawing *d, pni_image target, int layer, bool 
                           .clip_from_scene = d->clip_from_scene,
                           .cull_from_scene = later ? d->cull_from_scene : d->clip_from_scene,
                           .groups = d->draw->groups,
+                          .range = d->draw->range,
                           .without_host = d->draw->without_host,
                           .peel = peel,
                           .layer = layer};
+  pni_matrix light_from_scene = pni_light_from_scene(d->draw->frame);
+  for (int c = 0; c < 4; c++) draw.distance[c] = light_from_scene.m[4 * c + 2];
   return pni_casters_draw_pass(d->draw->casters, &draw);
 }
 

@@ -108,7 +108,7 @@ static pn_result shape_batches(const pni_job *job, int count) {
 
 /* ---- maps -------------------------------------------------------------------------------------------------------- */
 
-static void fit_point(const pni_job *job, const double shear[2], pni_fit_result *fit) {
+static pni_fit_request fit_point(const pni_job *job, const double shear[2], pni_fit_result *fit) {
   pni_fit_request request = {.frame = job->frame,
                              .emission = job->emission,
                              .shear = {shear[0], shear[1]},
@@ -119,15 +119,16 @@ static void fit_point(const pni_job *job, const double shear[2], pni_fit_result 
                              .given = job->desc->fit == PN_FIT_GIVEN ? job->desc->fit_bounds : NULL,
                              .visible = job->visible};
   pni_fit_maps(job->casters, job->groups, &request, fit);
-  if (!fit->empty) return;
+  if (!fit->empty) return request;
   request.visible = NULL; /* from this point no caster shadows anything seen: any map will do */
   pni_fit_maps(job->casters, job->groups, &request, fit);
+  return request;
 }
 
 /* A map from one point is never split: its border tiles would cost as much as more points. */
 static pn_result draw_map(const pni_job *job, pni_maps *batch, const double shear[2]) {
   pni_fit_result fit;
-  fit_point(job, shear, &fit);
+  pni_fit_request request = fit_point(job, shear, &fit);
   pni_map_draw draw = {.frame = job->frame,
                        .casters = job->casters,
                        .groups = job->groups,
@@ -135,6 +136,7 @@ static pn_result draw_map(const pni_job *job, pni_maps *batch, const double shea
                        .w_near = fit.w_near,
                        .w_far = fit.w_far,
                        .shear = {shear[0], shear[1]},
+                       .range = pni_fit_range(&request),
                        .without_host = job->receiver != NULL};
   if (fit.tiles == 1)
     for (int i = 0; i < 4; i++) draw.bounds[i] = fit.tile[0][i];
