@@ -30,15 +30,19 @@ static void bind_textures(pni_gpu *gpu, const pni_host_sampler *samplers, int co
   GL(gpu, ActiveTexture)((GLenum)unit);
 }
 
-bool pni_host_program_bind(pni_gpu *gpu, pn_gl program, const pni_buffer *block, int binding,
+static GLuint block_of(pni_gpu *gpu, pn_gl program) {
+  GLint linked = GL_FALSE;
+  if (GL(gpu, IsProgram)(program)) GL(gpu, GetProgramiv)(program, GL_LINK_STATUS, &linked);
+  return linked ? GL(gpu, GetUniformBlockIndex)(program, "pn_block") : GL_INVALID_INDEX;
+}
+
+bool pni_host_program_fits(pni_gpu *gpu, pn_gl program) { return block_of(gpu, program) != GL_INVALID_INDEX; }
+
+void pni_host_program_bind(pni_gpu *gpu, pn_gl program, const pni_buffer *block, int binding,
                            const pni_host_sampler *samplers, int count) {
-  bool linked = GL(gpu, IsProgram)(program);
-  GLuint index = linked ? GL(gpu, GetUniformBlockIndex)(program, "pn_block") : GL_INVALID_INDEX;
-  if (index == GL_INVALID_INDEX) return false;
   set_units(gpu, program, samplers, count);
-  GL(gpu, UniformBlockBinding)(program, index, (GLuint)binding);
+  GL(gpu, UniformBlockBinding)(program, block_of(gpu, program), (GLuint)binding);
   GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, (GLuint)binding, block->id);
   bind_textures(gpu, samplers, count);
   pni_forget(gpu);
-  return true;
 }
