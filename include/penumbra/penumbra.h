@@ -86,7 +86,7 @@ typedef enum { PN_LOG_ERROR = 0, PN_LOG_WARNING, PN_LOG_INFO } pn_log_level;
 /* Every message the library can send. Ids are stable: new ones are appended. */
 typedef enum {
   PN_MESSAGE_NONE = 0,
-  PN_MESSAGE_NULL_ARGUMENT,           /* a required pointer is NULL, or a receiver is of another context */
+  PN_MESSAGE_NULL_ARGUMENT,           /* a required pointer is NULL, or an object is of another context */
   PN_MESSAGE_GL_VERSION,              /* the context is older than OpenGL 3.3 core */
   PN_MESSAGE_GL_FUNCTION,             /* the loader has no such function */
   PN_MESSAGE_GL_LOST,                 /* the GL context was lost or reset */
@@ -110,7 +110,8 @@ typedef enum {
   PN_MESSAGE_INSTANCE_TRANSFORM,      /* not finite, or its last row is not 0 0 0 1 */
   PN_MESSAGE_CASTER_GROUP,            /* group not 0..31, or a group mask this version cannot serve */
   PN_MESSAGE_CASTER_BOUNDS,           /* bounds of a draw callback inverted or not finite */
-  PN_MESSAGE_RECEIVER_SOURCE,         /* neither or both of depth texture and framebuffer, or no such object */
+  /* neither or both of depth texture and framebuffer, or no such object; or a texture of the view is gone since */
+  PN_MESSAGE_RECEIVER_SOURCE,
   PN_MESSAGE_RECEIVER_DEPTH,          /* the source has no depth this library can read */
   PN_MESSAGE_RECEIVER_VIEW,           /* the view rectangle is empty, negative, or outside its texture */
   PN_MESSAGE_RECEIVER_MATRIX,         /* view or projection not finite or not invertible */
@@ -121,7 +122,7 @@ typedef enum {
   PN_MESSAGE_RECEIVER_UNSET,          /* pn_receiver_set has not succeeded yet */
   PN_MESSAGE_LIGHT_SHAPE,             /* unknown shape */
   PN_MESSAGE_LIGHT_FRAME,             /* direction or axis zero, parallel, or not finite */
-  /* half extents not positive and finite (sun: or tangent above PN_SUN_TANGENT_MAX) */
+  /* half extents not positive, or beyond 1e9 (sun: tangent above PN_SUN_TANGENT_MAX) */
   PN_MESSAGE_LIGHT_SIZE,
   PN_MESSAGE_LIGHT_RANGE,             /* near distance or range negative, not finite, or near >= range */
   PN_MESSAGE_LIGHT_TEXTURE,           /* a textured light, which this version does not do yet */
@@ -135,7 +136,8 @@ typedef enum {
   PN_MESSAGE_TECHNIQUE_UNKNOWN,       /* no technique of that name */
   PN_MESSAGE_PARAMETER_UNKNOWN,       /* the technique has no such parameter */
   PN_MESSAGE_PARAMETER_VALUE,         /* not a value of the parameter's type, or out of its range */
-  PN_MESSAGE_RESULT_TARGET,           /* the host's texture has the wrong size, format, layer or channels */
+  /* the host's texture has the wrong size, format, layer or channels, or is read by the call */
+  PN_MESSAGE_RESULT_TARGET,
   PN_MESSAGE_FORWARD,                 /* no forward form, or slots, lights, program or version do not fit */
   PN_MESSAGE_FALLBACK,                /* information: a slower way is taken because the device lacks a feature */
   PN_MESSAGE_ACCUMULATION,            /* warning: 16-bit sums of many small occluders lose some of them (`ssm`) */
@@ -241,8 +243,9 @@ typedef struct {
   pn_span indices;   /* count 0: positions are triangles, three by three */
   int index_bytes;   /* 0 (no indices), 2 or 4 */
   pn_span texcoords; /* 2 floats each, with alpha_texture only */
-  /* 2D texture whose alpha_channel below alpha_cutoff makes holes; its own sampling parameters and mipmaps are used.
-   * 0: opaque. Referenced, not copied */
+  /* 2D texture, no integers, whose alpha_channel below alpha_cutoff makes holes; its own sampling parameters and
+   * mipmaps are used, or, where it lacks mipmaps that they ask for, it is filtered linearly and repeated. 0: opaque.
+   * Referenced, not copied */
   pn_gl alpha_texture;
   int alpha_channel;    /* 0..3 = red..alpha. Default 0: set 3 for the usual alpha */
   float alpha_cutoff;   /* [0, 1]; a texel with alpha >= cutoff blocks. 0 = 0.5 */
@@ -377,9 +380,10 @@ PN_API void pn_receiver_destroy(pn_receiver **receiver);
  * and before pn_maps_update with PN_FIT_VISIBLE or PN_FIT_FRUSTUM: depth of a framebuffer or of a multisample texture
  * is copied here, and without normals the slopes of depth are found once, in the first pn_visibility after it, and kept
  * until the next call.
- * Errors: ARGUMENT (NULL_ARGUMENT, RECEIVER_SOURCE, RECEIVER_DEPTH, RECEIVER_VIEW, RECEIVER_MATRIX, RECEIVER_NORMAL,
- * RECEIVER_MASK, RECEIVER_SCALE, RECEIVER_FORMAT); where depth is copied UNSUPPORTED, OUT_OF_MEMORY, SHADER,
- * CONTEXT_LOST. */
+ * Warning: RECEIVER_RANGE.
+ * Errors: ARGUMENT (NULL_ARGUMENT, RECEIVER_SOURCE, RECEIVER_DEPTH, RECEIVER_VIEW, RECEIVER_RANGE, RECEIVER_MATRIX,
+ * RECEIVER_NORMAL, RECEIVER_MASK, RECEIVER_SCALE, RECEIVER_FORMAT); where depth is copied UNSUPPORTED,
+ * OUT_OF_MEMORY, SHADER, CONTEXT_LOST. */
 PN_API pn_result pn_receiver_set(pn_receiver *receiver, const pn_receiver_desc *desc);
 
 /* ---- light ------------------------------------------------------------------------------------------------------- */
@@ -409,7 +413,7 @@ typedef struct {
   float half_u, half_v; /* rectangle: half extents, scene units, to 1e9. Sun: tangents of the angular radii */
   /* Casters nearer than this are taken to be this far; snapped down, as bounds are. 0: from the casters */
   float near_distance;
-  float range;          /* instances wholly beyond this distance cast nothing. 0: no limit */
+  float range;          /* casters wholly beyond this distance cast nothing. 0: no limit */
   pn_gl texture;        /* radiance over the light: not yet, must be 0 */
   pn_fit fit;
   float fit_bounds[6];  /* PN_FIT_GIVEN: min and max, scene space; not a point */
@@ -496,7 +500,8 @@ PN_API pn_result pn_prepare(pn_context *context, const char *spec, const pn_rece
  * next call; the casters may change or go meanwhile, but for the technique `average` (docs/techniques/average.md).
  * Warnings: LIGHT_ANGLE, CASTER_MESHES.
  * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (LIGHT_UNSET, RECEIVER_UNSET), UNSUPPORTED, OUT_OF_MEMORY, SHADER,
- * CONTEXT_LOST. After a failure the maps of the last update stay, and pn_visibility goes on with them. */
+ * CONTEXT_LOST. After a failure the maps of the last update stay, and pn_visibility goes on with them. NOT_READY too
+ * where the host deleted what is read: RECEIVER_SOURCE, MESH_ALPHA, MESH_POSITIONS. */
 PN_API pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
                                 int visible_count);
 
@@ -504,7 +509,8 @@ PN_API pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t g
  * geometric horizon, and 1 where no part is (surfaces that face away, or lie behind a rectangle), on background, and
  * where the mask says so. May be called without a new pn_maps_update: the maps stay.
  * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (RECEIVER_UNSET, MAPS_STALE), UNSUPPORTED, OUT_OF_MEMORY, SHADER,
- * CONTEXT_LOST. After a failure the last result stays. */
+ * CONTEXT_LOST. After a failure the last result stays. NOT_READY too where the host deleted what is read, or made it
+ * smaller: RECEIVER_SOURCE; MESH_ALPHA with `average`. */
 PN_API pn_result pn_visibility(pn_light *light, pn_receiver *receiver);
 
 typedef struct {
@@ -524,8 +530,8 @@ enum { PN_CHANNEL_RED = 1, PN_CHANNEL_GREEN = 2, PN_CHANNEL_BLUE = 4, PN_CHANNEL
 
 /* Where a result goes in the host's own memory. */
 typedef struct {
-  /* 2D or 2D array, of the view's size at least, of any colour-renderable format that is no integer one. Written at the
-   * origin of level 0 */
+  /* 2D or 2D array, of the view's size at least, of any colour-renderable format that is no integer one; not one that
+   * the call reads. Written at the origin of level 0 */
   pn_gl texture;
   int layer;    /* of an array; 0 of a 2D texture */
   /* PN_CHANNEL_... that are written, each with the same visibility: four lights fit into one RGBA texture. 0: all that

@@ -138,6 +138,29 @@ static void test_depth_range(void **state) {
   end();
 }
 
+/* With glClipControl's upper-left origin the picture stands on its head, and so does the result. */
+static void test_upper_left(void **state) {
+  h = *state;
+  if (!gl.ClipControl) skip();
+  begin("pcss", CAST_MEMORY);
+  pn_receiver_desc d = description();
+  float *expected = picture(&d);
+  gl.ClipControl(GL_UPPER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  renderer_depth(&h->draw, &h->world, &view, &target);
+  gl.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  for (int i = 1; i < 16; i += 4) d.projection[i] = -d.projection[i];
+  float *turned = picture(&d);
+  int differ = 0;
+  for (int y = 0; y < HEIGHT; y++)
+    for (int x = 0; x < WIDTH; x++) {
+      float off = turned[y * WIDTH + x] - expected[(HEIGHT - 1 - y) * WIDTH + x];
+      differ += off > 0.1f || off < -0.1f;
+    }
+  if (differ > PIXELS / 500) fail_msg("%d pixels differ", differ);
+  free(expected), free(turned);
+  end();
+}
+
 /* Rectangles, arrays, integers. */
 static void test_kinds(void **state) {
   GLuint textures[3];
@@ -437,11 +460,19 @@ static void test_small_things(void **state) {
 
 int main(void) {
 #define TEST(f) cmocka_unit_test_teardown(f, host_check)
-  const struct CMUnitTest tests[] = {
-      TEST(test_deleted),          TEST(test_depth_range),      TEST(test_kinds),
-      TEST(test_framebuffer_size), TEST(test_feedback),         TEST(test_alpha_without_mipmaps),
-      TEST(test_alpha_deleted),    TEST(test_buffers_deleted),  TEST(test_message),
-      TEST(test_program_deleted),  TEST(test_deleted_in_scope), TEST(test_groups),
-      TEST(test_small_things)};
+  const struct CMUnitTest tests[] = {TEST(test_deleted),
+                                     TEST(test_depth_range),
+                                     TEST(test_upper_left),
+                                     TEST(test_kinds),
+                                     TEST(test_framebuffer_size),
+                                     TEST(test_feedback),
+                                     TEST(test_alpha_without_mipmaps),
+                                     TEST(test_alpha_deleted),
+                                     TEST(test_buffers_deleted),
+                                     TEST(test_message),
+                                     TEST(test_program_deleted),
+                                     TEST(test_deleted_in_scope),
+                                     TEST(test_groups),
+                                     TEST(test_small_things)};
   return cmocka_run_group_tests_name("gone", tests, host_setup, host_teardown);
 }

@@ -307,11 +307,15 @@ static void read_state(state_list *list) {
   read_fixed(list);
 }
 
+static pn_state_mode mode; /* PN_STATE_RESET leaves GL's defaults, so that only bits are compared */
+
 static void draw(pn_light *light) {
   pn_receiver_desc d = host_receiver_desc(&view, &target);
+  assert_int_equal(pn_state_begin(h.context), PN_OK);
   assert_int_equal(pn_receiver_set(receiver, &d), PN_OK);
   assert_int_equal(pn_maps_update(light, h.casters, PN_GROUPS_ALL, &receiver, 1), PN_OK);
   assert_int_equal(pn_visibility(light, receiver), PN_OK);
+  assert_int_equal(pn_state_end(h.context), PN_OK);
 }
 
 static void check_odd(const char *spec, pn_light *light, const odd *o, const float *expected) {
@@ -319,7 +323,7 @@ static void check_odd(const char *spec, pn_light *light, const odd *o, const flo
   read_state(&before);
   draw(light);
   read_state(&after);
-  int changed = state_differences(o->name, &before, &after, NULL, NULL);
+  int changed = mode == PN_STATE_RESET ? 0 : state_differences(o->name, &before, &after, NULL, NULL);
   o->set(0);
   gl.ActiveTexture(GL_TEXTURE0);
   float *image = host_result(light, receiver);
@@ -329,25 +333,48 @@ static void check_odd(const char *spec, pn_light *light, const odd *o, const flo
   free(image);
 }
 
-static void test_odd(void **state) {
+static void check_technique(const char *spec) {
+  pn_light_desc d = host_light_desc();
+  pn_light *light;
+  d.map_width = 24;
+  d.fit = PN_FIT_VISIBLE;
+  assert_int_equal(host_light(&h, &d, spec, &light), PN_OK);
+  draw(light);
+  float *expected = host_result(light, receiver);
+  int dark = 0;
+  for (int i = 0; i < PIXELS; i++) dark += expected[i] < 0.5f;
+  assert_true(dark > PIXELS / 50);
+  for (int i = 0; i < ODDS; i++)
+    if (compatible || !odds[i].fixed) check_odd(spec, light, &odds[i], expected);
+  free(expected);
+  pn_light_destroy(&light);
+}
+
+static void test_techniques(void **state) {
   (void)state;
-  for (int s = 0; host_spec(s); s++) {
-    pn_light_desc d = host_light_desc();
-    pn_light *light;
-    d.map_width = 24;
-    d.fit = PN_FIT_VISIBLE;
-    assert_int_equal(host_light(&h, &d, host_spec(s), &light), PN_OK);
-    draw(light);
-    float *expected = host_result(light, receiver);
-    int dark = 0;
-    for (int i = 0; i < PIXELS; i++) dark += expected[i] < 0.5f;
-    assert_true(dark > PIXELS / 50);
-    for (int i = 0; i < ODDS; i++)
-      if (compatible || !odds[i].fixed) check_odd(host_spec(s), light, &odds[i], expected);
-    free(expected);
-    pn_light_destroy(&light);
-  }
+  for (int s = 0; host_spec(s); s++) check_technique(host_spec(s));
   assert_int_equal(h.log.counts[PN_MESSAGE_RECEIVER_RANGE], 1); /* of the odd depth range, once */
+}
+
+/* The other two modes, in contexts of their own. */
+static void test_modes(void **state) {
+  static const pn_state_mode modes[2] = {PN_STATE_SCOPED, PN_STATE_RESET};
+  host first = h;
+  pn_receiver *first_receiver = receiver;
+  (void)state;
+  for (int i = 0; i < 2; i++) {
+    pn_context_desc desc = host_context_desc(&h);
+    desc.state = mode = modes[i];
+    assert_int_equal(pn_context_create(&desc, &h.context), PN_OK);
+    assert_int_equal(host_cast(&h, CAST_MEMORY), PN_OK);
+    assert_int_equal(pn_receiver_create(h.context, &receiver), PN_OK);
+    check_technique("bitmask");
+    check_technique("ssm");
+    pn_context_destroy(&h.context);
+  }
+  mode = PN_STATE_RESTORE;
+  h = first;
+  receiver = first_receiver;
 }
 
 /* ---- the fixture ------------------------------------------------------------------------------------------------- */
@@ -405,6 +432,7 @@ static int teardown(void **state) {
 
 int main(int argc, char **argv) {
   compatible = argc > 1 && strcmp(argv[1], "compatibility") == 0;
-  const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(test_odd, host_check)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(test_techniques, host_check),
+                                     cmocka_unit_test_teardown(test_modes, host_check)};
   return cmocka_run_group_tests_name(compatible ? "one odd, compatibility" : "one odd", tests, setup, teardown);
 }
