@@ -154,8 +154,8 @@ static void test_faults(void **state) {
     for (int i = 0; i < CALLS; i++)
       for (int kind = 0; kind < FAULT_KINDS; kind++)
         for (int fresh = kind != FAULT_MEMORY; fresh < 2; fresh++) {
-          /* Programs take memory many times over, each alike. */
-          long step = fresh && kind == FAULT_MEMORY ? 37 : 1;
+          /* Programs take memory many times over, each alike; and there are many. */
+          long step = fresh && kind == FAULT_MEMORY ? 37 : kind == FAULT_COMPILE || kind == FAULT_LINK ? 3 : 1;
           for (long k = 1; try_fault(host_spec(s), i, (fault_kind)kind, k, fresh); k += step) faults[kind]++;
         }
   for (int kind = 0; kind < FAULT_KINDS; kind++) {
