@@ -72,6 +72,8 @@ const char *pn_message_name(int message_id) {
       NAME(STATE_MODE),
       NAME(MESH_EDGES),
       NAME(CASTER_MESHES),
+      NAME(DEBUG_FLAGS),
+      NAME(RECEIVER_RANGE),
 #undef NAME
   };
   _Static_assert(sizeof names / sizeof *names == PN_MESSAGE_COUNT, "every message has a name");

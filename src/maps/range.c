@@ -35,7 +35,7 @@ pn_result pni_range_shape(pni_gpu *gpu, pni_texture *texture, const pni_range_ki
   if (kind->structure == PNI_RANGE_STACK)
     return pni_texture_shape(gpu, texture, "range stack", range_format(kind), width, height,
                              layers * level_count(power_above(larger(width, height))), 1);
-  pni_texture_free(gpu, texture, false);
+  pni_texture_spare(gpu, texture);
   return PN_OK;
 }
 
