@@ -115,6 +115,7 @@ pni_object *pni_object_find(const pn_context *context, uint64_t serial) {
 void pni_enter(pn_context *context) {
   pni_forget(&context->gpu);
   if (context->gpu.desc.state == PN_STATE_RESTORE) pni_state_save(&context->gpu, &context->saved);
+  else pni_find_group_room(&context->gpu); /* the one thing that is read: a full stack would be an error */
 }
 
 pn_result pni_leave(pn_context *context, pn_result result) {
@@ -158,6 +159,9 @@ pn_result pn_timing(pn_context *context, int enabled) {
 
 pn_result pn_debug(pn_context *context, int flags) {
   if (!context) return PN_ERROR_ARGUMENT;
+  if (flags & ~(PN_DEBUG_SEARCH | PN_DEBUG_BOUND))
+    return pni_fail(&context->gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_DEBUG_FLAGS, "debug flags 0x%x: only 0x%x are known",
+                    (unsigned)flags, (unsigned)(PN_DEBUG_SEARCH | PN_DEBUG_BOUND));
   context->gpu.debug = flags;
   return PN_OK;
 }

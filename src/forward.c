@@ -144,11 +144,13 @@ pn_result pn_bind(pn_light *const *lights, int count, pn_gl program, const pn_sl
   pn_context *context = lights[0]->object.context;
   pni_gpu *gpu = &context->gpu;
   pn_result result = check_lights(lights, count, slots);
+  if (result == PN_OK && !pni_host_program_fits(gpu, program))
+    result =
+        pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_FORWARD, "program %u does not contain pn_glsl's text", program);
   if (result == PN_OK) result = fill_blocks(context, lights, count);
   if (result != PN_OK) return result;
   pni_host_sampler samplers[2 * PN_FORWARD_LIGHTS_MAX];
   int sampler_count = fill_samplers(lights, count, slots->first_texture_unit, samplers);
-  if (pni_host_program_bind(gpu, program, &context->forward_block, slots->uniform_binding, samplers, sampler_count))
-    return PN_OK;
-  return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_FORWARD, "program %u does not contain pn_glsl's text", program);
+  pni_host_program_bind(gpu, program, &context->forward_block, slots->uniform_binding, samplers, sampler_count);
+  return PN_OK;
 }

@@ -35,15 +35,18 @@ void pn_light_destroy(pn_light **light) {
 
 /* ---- the description --------------------------------------------------------------------------------------------- */
 
-static bool positive(float value) { return isfinite(value) && value > 0; }
+/* Products of extents and distances have to be floats. */
+static const float largest_half = 1e9f;
+
+static bool in_range(float value, float most) { return value > 0 && value <= most; }
 
 static pn_result check_shape(pni_gpu *gpu, const pn_light_desc *d) {
   if (d->shape != PN_LIGHT_RECTANGLE && d->shape != PN_LIGHT_SUN)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_LIGHT_SHAPE, "light shape %d is unknown", (int)d->shape);
-  float most = d->shape == PN_LIGHT_SUN ? PN_SUN_TANGENT_MAX : INFINITY;
-  if (!positive(d->half_u) || !positive(d->half_v) || d->half_u > most || d->half_v > most)
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_LIGHT_SIZE, "half extents %g, %g must be positive and finite%s",
-                    d->half_u, d->half_v, d->shape == PN_LIGHT_SUN ? ", at most a tangent of 1" : "");
+  float most = d->shape == PN_LIGHT_SUN ? PN_SUN_TANGENT_MAX : largest_half;
+  if (!in_range(d->half_u, most) || !in_range(d->half_v, most))
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_LIGHT_SIZE, "half extents %g, %g must be positive, at most %g%s",
+                    d->half_u, d->half_v, most, d->shape == PN_LIGHT_SUN ? ", the tangent of 45 degrees" : "");
   if (!isfinite(d->near_distance) || !isfinite(d->range) || d->near_distance < 0 || d->range < 0 ||
       (d->range > 0 && d->near_distance >= d->range))
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_LIGHT_RANGE, "near distance %g and range %g do not make a range",
@@ -60,23 +63,42 @@ static pn_result check_maps(pni_gpu *gpu, const pn_light_desc *d) {
   for (int i = 0; i < 3 && d->fit == PN_FIT_GIVEN; i++)
     if (!isfinite(d->fit_bounds[i]) || !isfinite(d->fit_bounds[3 + i]) || d->fit_bounds[i] > d->fit_bounds[3 + i])
       return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_LIGHT_FIT, "fit bounds are inverted or not finite");
+  const float *box = d->fit_bounds;
+  if (d->fit == PN_FIT_GIVEN && box[0] == box[3] && box[1] == box[4] && box[2] == box[5])
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_LIGHT_FIT, "fit bounds are a point: %g, %g, %g", box[0], box[1],
+                    box[2]);
   if (d->map_width < 0 || d->map_height < 0 || d->map_width > most || d->map_height > most)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_LIGHT_MAP, "map %d x %d is not within 1..%d", d->map_width,
                     d->map_height, most);
   return PN_OK;
 }
 
+static bool is_zero(const float v[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+
+static pn_result check_frame(pni_gpu *gpu, const pn_light_desc *d) {
+  const float *const vectors[] = {d->center, d->direction, d->axis_u};
+  static const char *const names[] = {"centre", "direction", "axis_u"};
+  for (int i = 0; i < 3; i++)
+    if (!pni_floats_finite(vectors[i], 3))
+      return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_LIGHT_FRAME, "%s %g, %g, %g is not finite", names[i],
+                      vectors[i][0], vectors[i][1], vectors[i][2]);
+  if (is_zero(d->direction)) return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_LIGHT_FRAME, "direction is zero");
+  return PN_OK;
+}
+
 static pn_result make_frame(pni_gpu *gpu, const pn_light_desc *d, pni_frame *frame) {
   static const float up[3] = {0, 1, 0};
   float axis[3];
-  bool derived = d->axis_u[0] == 0 && d->axis_u[1] == 0 && d->axis_u[2] == 0;
+  bool derived = is_zero(d->axis_u);
   memcpy(axis, d->axis_u, sizeof axis);
-  bool sound = pni_floats_finite(d->center, 3) && pni_floats_finite(d->direction, 3) && pni_floats_finite(axis, 3) &&
-               (!derived || pn_light_frame(d->direction, up, NULL, axis, NULL) == PN_OK) &&
+  pn_result result = check_frame(gpu, d);
+  if (result != PN_OK) return result;
+  bool sound = (!derived || pn_light_frame(d->direction, up, NULL, axis, NULL) == PN_OK) &&
                pni_frame_axes(d->direction, axis, frame);
   if (!sound)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_LIGHT_FRAME,
-                    "centre, direction and axis must be finite, direction and axis neither zero nor parallel");
+                    "axis_u %g, %g, %g is parallel to direction %g, %g, %g", axis[0], axis[1], axis[2], d->direction[0],
+                    d->direction[1], d->direction[2]);
   bool sun = d->shape == PN_LIGHT_SUN;
   frame->projection = sun ? PNI_PARALLEL : PNI_CENTRAL;
   for (int i = 0; i < 3; i++) frame->origin[i] = sun ? 0 : d->center[i];
@@ -173,6 +195,7 @@ void pni_light_fill_block(const pn_light *light, pni_light_block *block) {
 pn_result pni_light_bind_block(pn_light *light) {
   pni_gpu *gpu = pni_light_gpu(light);
   pni_light_block block;
+  if (gpu->plan.on) return pni_buffer_reserve(gpu, &light->block, "light", PNI_BUFFER_BLOCK, sizeof block);
   pni_light_fill_block(light, &block);
   if (!light->block.id || memcmp(&block, &light->uploaded, sizeof block) != 0) {
     pn_result result = pni_buffer_fill(gpu, &light->block, "light", PNI_BUFFER_BLOCK, &block, sizeof block);

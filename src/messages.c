@@ -72,6 +72,8 @@ const char *pn_message_name(int message_id) {
       NAME(STATE_MODE),
       NAME(MESH_EDGES),
       NAME(CASTER_MESHES),
+      NAME(DEBUG_FLAGS),
+      NAME(RECEIVER_RANGE),
       NAME(RECEIVER_POSITION),
 #undef NAME
   };

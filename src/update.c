@@ -3,6 +3,7 @@
 
 #include "gl/device.h"
 #include "gl/host.h"
+#include "gl/plan.h"
 #include "light.h"
 #include "maps/maps.h"
 #include "maps/origin.h"
@@ -15,7 +16,7 @@ static pn_result find_frusta(pn_light *light, pn_receiver *const *receivers, int
   light->has_visible = wanted && count > 0;
   light->visible = pni_region_empty();
   for (int i = 0; i < count && light->has_visible; i++) {
-    if (!receivers[i] || !receivers[i]->set)
+    if (!receivers[i]->set)
       return pni_fail(pni_light_gpu(light), PN_ERROR_NOT_READY, PN_MESSAGE_RECEIVER_UNSET,
                       "visible receiver %d was never set", i);
     pni_receiver_frustum(receivers[i], &light->frame, &light->visible);
@@ -27,8 +28,12 @@ static pn_result find_frusta(pn_light *light, pn_receiver *const *receivers, int
 static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, int count) {
   light->visible = pni_region_empty();
   pn_result result = PN_OK;
-  for (int i = 0; i < count && result == PN_OK; i++)
+  for (int i = 0; i < count && result == PN_OK; i++) {
+    result = pni_receiver_open(receivers[i]);
+    if (result != PN_OK) break;
     result = pni_receiver_bounds(receivers[i], &light->frame, &light->visible);
+    pni_receiver_close(receivers[i]);
+  }
   pni_clock_mark(pni_light_gpu(light), &light->clock, "fit");
   return result;
 }
@@ -59,8 +64,12 @@ static void fit_light(pn_light *light, const pn_casters *casters, const pni_maps
 static pni_map_draw tile_draw(const pn_light *light, pn_casters *casters, const pni_maps_want *want, int tile) {
   const pni_fit_result *fit = &light->maps.fit;
   pni_fit_request request = fit_request(light, want);
-  pni_map_draw draw = {
-      .frame = &light->frame, .casters = casters, .groups = light->groups, .w_near = fit->w_near, .w_far = fit->w_far};
+  pni_map_draw draw = {.frame = &light->frame,
+                       .casters = casters,
+                       .groups = light->groups,
+                       .w_near = fit->w_near,
+                       .w_far = fit->w_far,
+                       .range = pni_fit_range(&request)};
   memcpy(draw.bounds, fit->tile[tile], sizeof draw.bounds);
   if (want->focus > 0) draw.later = pni_fit_focus(&request, fit, tile, want->focus);
   return draw;
@@ -110,58 +119,90 @@ static pn_result fit_to_view(pn_light *light, const pn_casters *casters, pn_rece
   return result;
 }
 
-/* Where the maps are to lie. Nothing is drawn yet: on failure the light and its maps stay as they were. */
-static pn_result place_maps(pn_light *light, const pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
-                            int visible_count, const pni_maps_want *want) {
-  pni_fit_result fit = light->maps.fit;
-  pni_frame frame = light->frame;
-  pni_region region = light->visible;
-  bool has_visible = light->has_visible;
-  uint32_t groups_before = light->groups;
+/* ---- all or nothing ---------------------------------------------------------------------------------------------- */
+
+/* What of a light an update changes, but for what plans bring back themselves. */
+typedef struct {
+  pni_maps maps;
+  pni_frame frame;
+  pni_region visible;
+  bool has_visible;
+  uint64_t casters;
+  uint32_t groups;
+} last_update;
+
+static last_update remember(const pn_light *light) {
+  return (last_update){light->maps, light->frame, light->visible, light->has_visible, light->casters, light->groups};
+}
+
+static void bring_back(pn_light *light, const last_update *last) {
+  light->maps = last->maps;
+  light->frame = last->frame;
+  light->visible = last->visible;
+  light->has_visible = last->has_visible;
+  light->casters = last->casters;
+  light->groups = last->groups;
+}
+
+static pn_result make_maps(pn_light *light, pn_casters *casters, const pni_maps_want *want) {
+  pn_result result = light->maps.fit.empty ? PN_OK : draw_maps(light, casters, want);
+  return result == PN_OK ? update_technique(light) : result;
+}
+
+/* Planned first: a failure leaves the maps of the last update, if there are any that can still be used. */
+static pn_result update_maps(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
+                             int visible_count) {
+  pni_gpu *gpu = pni_light_gpu(light);
+  bool keep = light->maps.ready;
+  last_update last = remember(light);
+  pni_maps_want want;
+  light->technique->want(light->values, &want);
   light->groups = groups;
+  light->casters = casters->object.serial;
   pni_frame_place(&light->frame, casters, groups);
-  pn_result result = fit_to_view(light, casters, visible, visible_count, want);
+  pn_result result = pni_gpu_check_lost(gpu);
+  if (result == PN_OK) result = fit_to_view(light, casters, visible, visible_count, &want);
   if (result == PN_OK) {
-    light->casters = casters->object.serial;
-    return PN_OK;
+    pni_plan_begin(gpu, keep);
+    result = pni_plan_end(gpu, make_maps(light, casters, &want));
   }
-  light->maps.fit = fit;
-  light->frame = frame;
-  light->visible = region;
-  light->has_visible = has_visible;
-  light->groups = groups_before;
+  if (result != PN_OK) {
+    if (keep) bring_back(light, &last);
+    return result;
+  }
+  result = make_maps(light, casters, &want);
+  light->maps.ready = result == PN_OK;
   return result;
 }
 
-static pn_result update_maps(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
-                             int visible_count) {
-  pni_maps_want want;
-  light->technique->want(light->values, &want);
-  pn_result result = pni_gpu_check_lost(pni_light_gpu(light));
-  if (result == PN_OK) result = place_maps(light, casters, groups, visible, visible_count, &want);
-  if (result != PN_OK) return result;
-  if (!light->maps.fit.empty) result = draw_maps(light, casters, &want);
-  if (result == PN_OK) result = update_technique(light);
-  light->maps.ready = result == PN_OK;
-  return result;
+static pn_result check_arguments(const pn_light *light, const pn_casters *casters, pn_receiver *const *visible,
+                                 int visible_count) {
+  pni_gpu *gpu = pni_light_gpu(light);
+  const pn_context *context = light->object.context;
+  if (!casters) return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_maps_update: casters is NULL");
+  if (casters->object.context != context)
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
+                    "pn_maps_update: the casters are of another context");
+  if (visible_count < 0 || (visible_count > 0 && !visible))
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
+                    "pn_maps_update: visible is NULL, or a number of %d", visible_count);
+  for (int i = 0; i < visible_count; i++)
+    if (!visible[i] || visible[i]->object.context != context)
+      return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_maps_update: visible[%d] is %s", i,
+                      visible[i] ? "of another context" : "NULL");
+  if (!light->set) return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_LIGHT_UNSET, "pn_light_set comes first");
+  return PN_OK;
 }
 
 pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
                          int visible_count) {
   if (!light) return PN_ERROR_ARGUMENT;
   pni_gpu *gpu = pni_light_gpu(light);
-  if (!casters || (visible_count > 0 && !visible) || visible_count < 0)
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT, "pn_maps_update: casters or visible is NULL");
-  bool ours = casters->object.context == light->object.context;
-  for (int i = 0; i < visible_count; i++)
-    ours = ours && (!visible[i] || visible[i]->object.context == light->object.context);
-  if (!ours)
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_NULL_ARGUMENT,
-                    "pn_maps_update: casters or a receiver of another context");
-  if (!light->set) return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_LIGHT_UNSET, "pn_light_set comes first");
+  pn_result result = check_arguments(light, casters, visible, visible_count);
+  if (result != PN_OK) return result;
   pni_enter(light->object.context);
   pni_clock_start(gpu, &light->clock);
-  pn_result result = update_maps(light, casters, groups, visible, visible_count);
+  result = update_maps(light, casters, groups, visible, visible_count);
   pni_clock_end(gpu, &light->clock);
   return pni_leave(light->object.context, result);
 }

@@ -19,8 +19,8 @@
  *   - Objects live until their pn_..._destroy or their context's. GL objects of the host's are referenced, never freed:
  *     keep them alive as long as a description holds them.
  *   - Functions return PN_OK or a negative pn_result; the reason, with a stable message id, goes to the context's log.
- *     A call that fails leaves the object as it was, unless it says what becomes of it. Nothing aborts, nothing is
- *     printed, no GL error is raised, as long as the host's objects live that a description holds.
+ *     A call that fails leaves everything as it was, maps and results included: what can fail is made before the first
+ *     draw. Nothing aborts, nothing is printed, no GL error is raised.
  *   - The same input on the same device gives the same bits.
  *
  * Errors are listed as results, with the messages that tell them apart: "Errors: ARGUMENT (MESH_BOUNDS),
@@ -86,7 +86,7 @@ typedef enum { PN_LOG_ERROR = 0, PN_LOG_WARNING, PN_LOG_INFO } pn_log_level;
 /* Every message the library can send. Ids are stable: new ones are appended. */
 typedef enum {
   PN_MESSAGE_NONE = 0,
-  PN_MESSAGE_NULL_ARGUMENT,           /* a required pointer is NULL, or a receiver is of another context */
+  PN_MESSAGE_NULL_ARGUMENT,           /* a required pointer is NULL, or an object is of another context */
   PN_MESSAGE_GL_VERSION,              /* the context is older than OpenGL 3.3 core */
   PN_MESSAGE_GL_FUNCTION,             /* the loader has no such function */
   PN_MESSAGE_GL_LOST,                 /* the GL context was lost or reset */
@@ -110,7 +110,8 @@ typedef enum {
   PN_MESSAGE_INSTANCE_TRANSFORM,      /* not finite, or its last row is not 0 0 0 1 */
   PN_MESSAGE_CASTER_GROUP,            /* group not 0..31, or a group mask this version cannot serve */
   PN_MESSAGE_CASTER_BOUNDS,           /* bounds of a draw callback inverted or not finite */
-  PN_MESSAGE_RECEIVER_SOURCE,         /* neither or both of depth texture and framebuffer, or no such object */
+  /* neither or both of depth texture and framebuffer, or no such object; or a texture of the view is gone since */
+  PN_MESSAGE_RECEIVER_SOURCE,
   PN_MESSAGE_RECEIVER_DEPTH,          /* the source has no depth this library can read */
   PN_MESSAGE_RECEIVER_VIEW,           /* the view rectangle is empty, negative, or outside its texture */
   PN_MESSAGE_RECEIVER_MATRIX,         /* view or projection not finite or not invertible */
@@ -121,11 +122,11 @@ typedef enum {
   PN_MESSAGE_RECEIVER_UNSET,          /* pn_receiver_set has not succeeded yet */
   PN_MESSAGE_LIGHT_SHAPE,             /* unknown shape */
   PN_MESSAGE_LIGHT_FRAME,             /* direction or axis zero, parallel, or not finite */
-  /* half extents not positive and finite (sun: or tangent above PN_SUN_TANGENT_MAX) */
+  /* half extents not positive, or beyond 1e9 (sun: tangent above PN_SUN_TANGENT_MAX) */
   PN_MESSAGE_LIGHT_SIZE,
   PN_MESSAGE_LIGHT_RANGE,             /* near distance or range negative, not finite, or near >= range */
   PN_MESSAGE_LIGHT_TEXTURE,           /* a textured light, which this version does not do yet */
-  PN_MESSAGE_LIGHT_FIT,               /* unknown fit, or its bounds inverted or not finite */
+  PN_MESSAGE_LIGHT_FIT,               /* unknown fit, or its bounds a point, inverted or not finite */
   PN_MESSAGE_LIGHT_MAP,               /* map size outside 1..8192 or beyond the device's limit */
   PN_MESSAGE_LIGHT_ANGLE,             /* warning: the map would open past 170 degrees and is clamped there */
   PN_MESSAGE_LIGHT_UNSET,             /* pn_light_set has not succeeded yet */
@@ -135,7 +136,8 @@ typedef enum {
   PN_MESSAGE_TECHNIQUE_UNKNOWN,       /* no technique of that name */
   PN_MESSAGE_PARAMETER_UNKNOWN,       /* the technique has no such parameter */
   PN_MESSAGE_PARAMETER_VALUE,         /* not a value of the parameter's type, or out of its range */
-  PN_MESSAGE_RESULT_TARGET,           /* the host's texture has the wrong size, format, layer or channels */
+  /* the host's texture has the wrong size, format, layer or channels, or is read by the call */
+  PN_MESSAGE_RESULT_TARGET,
   PN_MESSAGE_FORWARD,                 /* no forward form, or slots, lights, program or version do not fit */
   PN_MESSAGE_FALLBACK,                /* information: a slower way is taken because the device lacks a feature */
   PN_MESSAGE_ACCUMULATION,            /* warning: 16-bit sums of many small occluders lose some of them (`ssm`) */
@@ -144,6 +146,10 @@ typedef enum {
    * other */
   PN_MESSAGE_MESH_EDGES,
   PN_MESSAGE_CASTER_MESHES,           /* warning: the technique needs meshes, and some casters have none */
+  PN_MESSAGE_DEBUG_FLAGS,             /* pn_debug does not know all of its flags */
+  /* the description's depth range is impossible; or, a warning once a receiver: glDepthRange is not 0 to 1, and the
+   * description has none */
+  PN_MESSAGE_RECEIVER_RANGE,
   PN_MESSAGE_RECEIVER_POSITION,       /* position_error negative or not finite */
   PN_MESSAGE_COUNT
 } pn_message;
@@ -238,8 +244,9 @@ typedef struct {
   pn_span indices;   /* count 0: positions are triangles, three by three */
   int index_bytes;   /* 0 (no indices), 2 or 4 */
   pn_span texcoords; /* 2 floats each, with alpha_texture only */
-  /* 2D texture whose alpha_channel below alpha_cutoff makes holes; its own sampling parameters and mipmaps are used.
-   * 0: opaque. Referenced, not copied */
+  /* 2D texture, no integers, whose alpha_channel below alpha_cutoff makes holes; its own sampling parameters and
+   * mipmaps are used, or, where it lacks mipmaps that they ask for, it is filtered linearly and repeated. 0: opaque.
+   * Referenced, not copied */
   pn_gl alpha_texture;
   int alpha_channel;    /* 0..3 = red..alpha. Default 0: set 3 for the usual alpha */
   float alpha_cutoff;   /* [0, 1]; a texel with alpha >= cutoff blocks. 0 = 0.5 */
@@ -267,8 +274,7 @@ PN_API pn_result pn_mesh_add(pn_casters *casters, const pn_mesh_desc *desc, pn_m
 /* The mesh deformed. positions: new data of the same count in memory, of a mesh that came from memory, copied; or NULL
  * when the contents of the GL buffer changed. bounds: min and max in object space, six floats; NULL: computed (memory)
  * or unchanged (GL buffer). Its triangles are looked at anew: those without area in this pose are dropped.
- * Errors: ARGUMENT (MESH_UNKNOWN, MESH_POSITIONS, MESH_BOUNDS); OUT_OF_MEMORY, CONTEXT_LOST, which leave the mesh to be
- * moved again. */
+ * Errors: ARGUMENT (MESH_UNKNOWN, MESH_POSITIONS, MESH_BOUNDS), OUT_OF_MEMORY, CONTEXT_LOST. */
 PN_API pn_result pn_mesh_moved(pn_casters *casters, pn_mesh mesh, const pn_span *positions, const float *bounds);
 
 /* Removes the mesh and its instances. Errors: ARGUMENT (MESH_UNKNOWN). */
@@ -347,6 +353,7 @@ typedef struct {
   float projection[16];    /* clip from eye */
   int depth_zero_to_one;   /* nonzero: the projection maps to [0, 1] (glClipControl with GL_ZERO_TO_ONE) */
   int reversed_depth;      /* nonzero: near is 1, and depth 0 means that nothing was drawn; else depth 1 does */
+  float depth_range[2];    /* glDepthRange's near and far when depth was drawn, in [0, 1]; both 0 = 0 to 1 */
   /* 0: the tangent plane comes from depth. Same size and view rectangle as the depth texture (framebuffer: as the
    * view) */
   pn_gl normal_texture;
@@ -380,9 +387,10 @@ PN_API void pn_receiver_destroy(pn_receiver **receiver);
  * and before pn_maps_update with PN_FIT_VISIBLE or PN_FIT_FRUSTUM: depth of a framebuffer or of a multisample texture
  * is copied here, and without normals the slopes of depth are found once, in the first pn_visibility after it, and kept
  * until the next call.
- * Errors: ARGUMENT (NULL_ARGUMENT, RECEIVER_SOURCE, RECEIVER_DEPTH, RECEIVER_VIEW, RECEIVER_MATRIX, RECEIVER_NORMAL,
- * RECEIVER_MASK, RECEIVER_SCALE, RECEIVER_FORMAT, RECEIVER_POSITION); where depth is copied UNSUPPORTED,
- * OUT_OF_MEMORY, SHADER, CONTEXT_LOST. */
+ * Warning: RECEIVER_RANGE.
+ * Errors: ARGUMENT (NULL_ARGUMENT, RECEIVER_SOURCE, RECEIVER_DEPTH, RECEIVER_VIEW, RECEIVER_RANGE, RECEIVER_MATRIX,
+ * RECEIVER_NORMAL, RECEIVER_MASK, RECEIVER_SCALE, RECEIVER_FORMAT, RECEIVER_POSITION); where depth is copied
+ * UNSUPPORTED, OUT_OF_MEMORY, SHADER, CONTEXT_LOST. */
 PN_API pn_result pn_receiver_set(pn_receiver *receiver, const pn_receiver_desc *desc);
 
 /* ---- light ------------------------------------------------------------------------------------------------------- */
@@ -409,13 +417,13 @@ typedef struct {
   float direction[3]; /* where it shines; any length but zero */
   /* the rectangle's first axis; made perpendicular to direction. Zero: derived from up, see pn_light_frame */
   float axis_u[3];
-  float half_u, half_v; /* rectangle: half extents, scene units. Sun: tangents of the angular radii */
+  float half_u, half_v; /* rectangle: half extents, scene units, to 1e9. Sun: tangents of the angular radii */
   /* Casters nearer than this are taken to be this far; snapped down, as bounds are. 0: from the casters */
   float near_distance;
-  float range;          /* instances wholly beyond this distance cast nothing. 0: no limit */
+  float range;          /* casters wholly beyond this distance cast nothing. 0: no limit */
   pn_gl texture;        /* radiance over the light: not yet, must be 0 */
   pn_fit fit;
-  float fit_bounds[6];  /* PN_FIT_GIVEN: min and max, scene space */
+  float fit_bounds[6];  /* PN_FIT_GIVEN: min and max, scene space; not a point */
   int map_width, map_height; /* texels of each depth map, 1..8192, any number; 0 = 512, height 0 = width */
 } pn_light_desc;
 
@@ -499,7 +507,8 @@ PN_API pn_result pn_prepare(pn_context *context, const char *spec, const pn_rece
  * next call; the casters may change or go meanwhile, but for the technique `average` (docs/techniques/average.md).
  * Warnings: LIGHT_ANGLE, CASTER_MESHES.
  * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (LIGHT_UNSET, RECEIVER_UNSET), UNSUPPORTED, OUT_OF_MEMORY, SHADER,
- * CONTEXT_LOST. ARGUMENT and NOT_READY leave the maps as they were; others may leave none. */
+ * CONTEXT_LOST. After a failure the maps of the last update stay, and pn_visibility goes on with them. NOT_READY too
+ * where the host deleted what is read: RECEIVER_SOURCE, MESH_ALPHA, MESH_POSITIONS. */
 PN_API pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t groups, pn_receiver *const *visible,
                                 int visible_count);
 
@@ -507,8 +516,8 @@ PN_API pn_result pn_maps_update(pn_light *light, pn_casters *casters, uint32_t g
  * geometric horizon, and 1 where no part is (surfaces that face away, or lie behind a rectangle), on background, and
  * where the mask says so. May be called without a new pn_maps_update: the maps stay.
  * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (RECEIVER_UNSET, MAPS_STALE), UNSUPPORTED, OUT_OF_MEMORY, SHADER,
- * CONTEXT_LOST. A failure leaves the pair without a result, but for those that are noticed before anything is drawn,
- * ARGUMENT and NOT_READY. */
+ * CONTEXT_LOST. After a failure the last result stays. NOT_READY too where the host deleted what is read, or made it
+ * smaller: RECEIVER_SOURCE; MESH_ALPHA with `average`. */
 PN_API pn_result pn_visibility(pn_light *light, pn_receiver *receiver);
 
 typedef struct {
@@ -528,8 +537,8 @@ enum { PN_CHANNEL_RED = 1, PN_CHANNEL_GREEN = 2, PN_CHANNEL_BLUE = 4, PN_CHANNEL
 
 /* Where a result goes in the host's own memory. */
 typedef struct {
-  /* 2D or 2D array, of the view's size at least, of any colour-renderable format that is no integer one. Written at the
-   * origin of level 0 */
+  /* 2D or 2D array, of the view's size at least, of any colour-renderable format that is no integer one; not one that
+   * the call reads. Written at the origin of level 0 */
   pn_gl texture;
   int layer;    /* of an array; 0 of a 2D texture */
   /* PN_CHANNEL_... that are written, each with the same visibility: four lights fit into one RGBA texture. 0: all that
@@ -554,7 +563,8 @@ typedef struct {
  * Errors: ARGUMENT (NULL_ARGUMENT), NOT_READY (MAPS_STALE): the last one had another technique, or no shadow. */
 PN_API pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver, pn_soft_shadow_map *out);
 
-/* Makes techniques tell what they did, as debug images. flags: the sum of what is wanted, 0 at first. Errors: none.
+/* Makes techniques tell what they did, as debug images. flags: the sum of what is wanted, 0 at first.
+ * Errors: ARGUMENT (DEBUG_FLAGS).
  * PN_DEBUG_SEARCH  "search", of techniques that search: red = class (0 no map was asked, 1 lit, 2 umbra, 3 penumbra),
  *                  green = blocks visited, blue = primitives covered, alpha = texels in the search windows; costs a
  *                  second colour target. Of technique `ssm`: "covered", in the layers of the soft shadow map, how many

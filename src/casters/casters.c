@@ -100,15 +100,12 @@ pn_result pn_mesh_moved(pn_casters *casters, pn_mesh mesh, const pn_span *positi
   pni_gpu *gpu = gpu_of(casters);
   pni_mesh_data *data = known_mesh(casters, mesh);
   if (!data) return PN_ERROR_ARGUMENT;
-  bool in_buffer = data->positions.buffer != 0;
-  if (positions && (in_buffer || !positions->data || positions->buffer || positions->count != data->positions.count ||
-                    (positions->stride && positions->stride < 12)))
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_POSITIONS,
-                    "new positions: in memory, as many as before, of a mesh whose positions came from memory");
+  pn_result result = positions ? pni_mesh_check_moved(gpu, data, positions) : PN_OK;
+  if (result != PN_OK) return result;
   if (bounds && !pni_box_sound(bounds, bounds + 3))
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_MESH_BOUNDS, "bounds are inverted or not finite");
   pni_enter(casters->object.context);
-  pn_result result = pni_mesh_deform(gpu, data, positions, bounds);
+  result = pni_mesh_deform(gpu, data, positions, bounds);
   return pni_leave(casters->object.context, result);
 }
 
@@ -208,10 +205,10 @@ bool pni_casters_call_host(const pn_casters *casters, uint32_t groups) {
   return false;
 }
 
-pni_matrix pni_scene_from_vertex(const pn_casters *casters, const pni_instance_data *instance) {
-  pni_matrix out = instance->scene_from_object;
+pni_matrix pni_from_vertex(const pni_mesh_data *mesh, const pni_matrix *from_object) {
+  pni_matrix out = *from_object;
   double at[3];
-  pni_matrix_point(&out, casters->meshes[instance->mesh].center, at);
+  pni_matrix_point(from_object, mesh->center, at);
   memcpy(out.m + 12, at, sizeof at);
   return out;
 }

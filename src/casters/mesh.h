@@ -23,6 +23,7 @@ typedef struct pni_mesh_data {
   double center[3];                                     /* object space: own_positions are seen from it; else 0 */
   size_t draw_count;                                    /* vertices or indices drawn */
   pn_gl alpha_texture;
+  bool alpha_complete; /* as its own parameters want it */
   int alpha_channel;
   float alpha_cutoff;
   bool clockwise;
@@ -36,7 +37,10 @@ typedef struct pni_mesh_data {
 
 bool pni_box_sound(const float min[3], const float max[3]);
 pn_result pni_mesh_check(pni_gpu *gpu, const pn_mesh_desc *desc);
+/* New positions of the mesh. */
+pn_result pni_mesh_check_moved(pni_gpu *gpu, const pni_mesh_data *mesh, const pn_span *positions);
 pn_result pni_mesh_build(pni_gpu *gpu, const pn_mesh_desc *desc, pni_mesh_data *mesh);
+/* A failure leaves the mesh as it was. */
 pn_result pni_mesh_deform(pni_gpu *gpu, pni_mesh_data *mesh, const pn_span *positions, const float *bounds);
 void pni_mesh_drop(pni_gpu *gpu, pni_mesh_data *mesh, bool abandon);
 

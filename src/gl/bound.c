@@ -2,28 +2,8 @@
 
 #include <string.h>
 
+#include "gl/fixed.h"
 #include "gl/label.h"
-
-/* Multisampling is of no effect in the single-sample targets the library draws to. */
-const GLenum pni_switches[PNI_SWITCHES] = {
-    GL_SCISSOR_TEST,
-    GL_STENCIL_TEST,
-    GL_DEPTH_TEST,
-    GL_CULL_FACE,
-    GL_POLYGON_OFFSET_FILL,
-    GL_COLOR_LOGIC_OP,
-    GL_RASTERIZER_DISCARD,
-    GL_SAMPLE_ALPHA_TO_COVERAGE,
-    GL_SAMPLE_COVERAGE,
-    GL_SAMPLE_MASK,
-    GL_PRIMITIVE_RESTART,
-    GL_FRAMEBUFFER_SRGB,
-    GL_DITHER,
-    GL_DEPTH_CLAMP,
-    GL_SAMPLE_ALPHA_TO_ONE,
-    GL_PROGRAM_POINT_SIZE,
-    GL_PRIMITIVE_RESTART_FIXED_INDEX, /* 4.3: last, so that older contexts leave it out */
-};
 
 const GLenum pni_pack_names[PNI_PIXEL_NAMES] = {GL_PACK_ALIGNMENT, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
                                                 GL_PACK_SKIP_PIXELS, GL_PACK_SWAP_BYTES};
@@ -32,8 +12,6 @@ const GLenum pni_unpack_names[PNI_PIXEL_NAMES] = {GL_UNPACK_ALIGNMENT, GL_UNPACK
 const GLint pni_pixel_defaults[PNI_PIXEL_NAMES] = {4, 0, 0, 0, 0};
 
 /* ---- plain settings ---------------------------------------------------------------------------------------------- */
-
-int pni_switch_count(const pni_gpu *gpu) { return gpu->can.fixed_restart ? PNI_SWITCHES : PNI_SWITCHES - 1; }
 
 void pni_viewport(pni_gpu *gpu, const int b[4]) {
   if (gpu->can.viewports) GL(gpu, ViewportIndexedf)(0, (GLfloat)b[0], (GLfloat)b[1], (GLfloat)b[2], (GLfloat)b[3]);
@@ -85,8 +63,8 @@ static void neutral_pixels(pni_gpu *gpu, const pni_host_state *host) {
 
 static void neutral_switches(pni_gpu *gpu, const pni_host_state *host) {
   bool blends = !host;
-  for (int i = 0; i < pni_switch_count(gpu); i++)
-    if (!host || host->enabled[i]) pni_switch(gpu, pni_switches[i], false);
+  for (int i = 0; i < gpu->can.switch_count; i++)
+    if (!host || host->enabled[i]) pni_switch(gpu, gpu->can.switches[i], false);
   for (int i = 0; i < gpu->can.clip_distances; i++)
     if (!host || host->clip[i]) GL(gpu, Disable)(GL_CLIP_DISTANCE0 + (GLenum)i);
   for (int i = 0; i < gpu->can.draw_buffers && host; i++) blends = blends || host->blend[i];
@@ -125,11 +103,13 @@ static void label_shared(pni_gpu *gpu) {
   pni_bind_vertex_array(gpu, gpu->vertex_array);
   pni_bind_framebuffer(gpu);
   pni_bind_read_framebuffer(gpu);
+  pni_bind_texture(gpu, PNI_UNIT_SCRATCH, GL_TEXTURE_2D, 0, gpu->sampler_linear);
   pni_bind_texture(gpu, PNI_UNIT_SCRATCH, GL_TEXTURE_2D, 0, gpu->sampler_nearest);
   pni_label(gpu, GL_VERTEX_ARRAY, gpu->vertex_array, "screen");
   pni_label(gpu, GL_FRAMEBUFFER, gpu->framebuffer, "passes");
   pni_label(gpu, GL_FRAMEBUFFER, gpu->read_framebuffer, "reading");
   pni_label(gpu, GL_SAMPLER, gpu->sampler_nearest, "nearest");
+  pni_label(gpu, GL_SAMPLER, gpu->sampler_linear, "linear");
 }
 
 /* What the settings below are after pni_neutral; objects that are bound are unknown. */
@@ -155,6 +135,7 @@ void pni_neutral(pni_gpu *gpu) {
   neutral_switches(gpu, host);
   neutral_raster(gpu, host);
   neutral_pixels(gpu, host);
+  pni_fixed_neutral(gpu, host);
   remember_neutral(&gpu->bound);
   label_shared(gpu);
 }

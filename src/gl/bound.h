@@ -43,9 +43,6 @@ void pni_set_point_size(pni_gpu *gpu, bool on);
 
 /* ---- without remembering: for what saves and restores the host's state ---- */
 
-/* Capabilities without an index that are switched off; GL_DITHER is the only one that is on by GL's default. */
-extern const GLenum pni_switches[PNI_SWITCHES];
-int pni_switch_count(const pni_gpu *gpu);
 void pni_switch(pni_gpu *gpu, GLenum name, bool on);
 void pni_viewport(pni_gpu *gpu, const int box[4]);
 void pni_depth_range(pni_gpu *gpu, double near, double far);

@@ -39,6 +39,10 @@ pn_result pni_buffer_fill(pni_gpu *gpu, pni_buffer *buffer, const char *label, p
   return result;
 }
 
+pn_result pni_buffer_reserve(pni_gpu *gpu, pni_buffer *buffer, const char *label, pni_buffer_use use, size_t bytes) {
+  return buffer->bytes == bytes ? PN_OK : pni_buffer_fill(gpu, buffer, label, use, NULL, bytes);
+}
+
 void pni_buffer_free(pni_gpu *gpu, pni_buffer *buffer, bool abandon) {
   if (!buffer->id) return;
   if (!abandon) {
@@ -50,6 +54,7 @@ void pni_buffer_free(pni_gpu *gpu, pni_buffer *buffer, bool abandon) {
 }
 
 void pni_bind_block(pni_gpu *gpu, const pni_buffer *block) {
+  if (gpu->plan.on) return;
   pni_ready(gpu);
   if (gpu->bound.block == block->id) return;
   GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PNI_BLOCK_BINDING, block->id);

@@ -14,6 +14,8 @@ typedef enum { PNI_BUFFER_BLOCK, PNI_BUFFER_VERTICES, PNI_BUFFER_INDICES, PNI_BU
 /* Fills the buffer, making it where there is none; data NULL: undefined. What there was stays where that fails. */
 pn_result pni_buffer_fill(pni_gpu *gpu, pni_buffer *buffer, const char *label, pni_buffer_use use, const void *data,
                           size_t bytes);
+/* A buffer of that size, its contents undefined; nothing happens where it has that size. */
+pn_result pni_buffer_reserve(pni_gpu *gpu, pni_buffer *buffer, const char *label, pni_buffer_use use, size_t bytes);
 void pni_buffer_free(pni_gpu *gpu, pni_buffer *buffer, bool abandon);
 
 /* The uniform block of the passes that follow. */

@@ -72,7 +72,7 @@ void pni_clock_start(pni_gpu *gpu, pni_clock *clock) {
 }
 
 void pni_clock_mark(pni_gpu *gpu, pni_clock *clock, const char *stage) {
-  if (clock->running) add_mark(gpu, &clock->frames[clock->current], stage);
+  if (clock->running && !gpu->plan.on) add_mark(gpu, &clock->frames[clock->current], stage);
 }
 
 void pni_clock_end(pni_gpu *gpu, pni_clock *clock) {

@@ -52,6 +52,36 @@ static bool is_software(const char *renderer) {
   return false;
 }
 
+/* What changes what a pass draws, beside the clip distances; GL_DITHER is the only one that is on by GL's default.
+ * Multisampling is of no effect in the single-sample targets the library draws to. */
+static void find_switches(pni_gpu *gpu) {
+  static const GLenum always[] = {GL_SCISSOR_TEST,
+                                  GL_STENCIL_TEST,
+                                  GL_DEPTH_TEST,
+                                  GL_CULL_FACE,
+                                  GL_POLYGON_OFFSET_FILL,
+                                  GL_POLYGON_SMOOTH,
+                                  GL_COLOR_LOGIC_OP,
+                                  GL_RASTERIZER_DISCARD,
+                                  GL_SAMPLE_ALPHA_TO_COVERAGE,
+                                  GL_SAMPLE_COVERAGE,
+                                  GL_SAMPLE_MASK,
+                                  GL_PRIMITIVE_RESTART,
+                                  GL_FRAMEBUFFER_SRGB,
+                                  GL_DITHER,
+                                  GL_DEPTH_CLAMP,
+                                  GL_SAMPLE_ALPHA_TO_ONE,
+                                  GL_PROGRAM_POINT_SIZE};
+  static const GLenum fixed[] = {GL_ALPHA_TEST, GL_POLYGON_STIPPLE, GL_POINT_SMOOTH};
+  pni_capabilities *can = &gpu->can;
+  memcpy(can->switches, always, sizeof always);
+  int count = sizeof always / sizeof *always;
+  if (can->version >= 43) can->switches[count++] = GL_PRIMITIVE_RESTART_FIXED_INDEX;
+  if (has_extension(gpu, "GL_EXT_depth_bounds_test")) can->switches[count++] = GL_DEPTH_BOUNDS_TEST_EXT;
+  for (int i = 0; i < 3 && can->compatibility; i++) can->switches[count++] = fixed[i];
+  can->switch_count = count;
+}
+
 static void read_capabilities(pni_gpu *gpu) {
   pni_capabilities *can = &gpu->can;
   const char *renderer = (const char *)GL(gpu, GetString)(GL_RENDERER);
@@ -70,14 +100,22 @@ static void read_capabilities(pni_gpu *gpu) {
   can->blend_buffers = function && can->version >= 40;
   function = !gpu->desc.get_proc_address || gpu->storage.DrawArraysIndirect;
   can->indirect = function && (can->version >= 40 || has_extension(gpu, "GL_ARB_draw_indirect"));
-  function = !gpu->desc.get_proc_address || gpu->storage.GetTextureParameteriv;
-  can->targets = function && (can->version >= 45 || has_extension(gpu, "GL_ARB_direct_state_access"));
+  function =
+      !gpu->desc.get_proc_address || (gpu->storage.GetTextureParameteriv && gpu->storage.GetTextureLevelParameteriv &&
+                                      gpu->storage.GetNamedRenderbufferParameteriv);
+  can->by_name = function && (can->version >= 45 || has_extension(gpu, "GL_ARB_direct_state_access"));
+  /* Mesa refuses GL_TEXTURE_TARGET in compatibility contexts. */
+  can->targets = can->by_name && !can->compatibility;
   function = !gpu->desc.get_proc_address ||
              (gpu->storage.ObjectLabel && gpu->storage.PushDebugGroup && gpu->storage.PopDebugGroup);
   can->labels = function && (can->version >= 43 || has_extension(gpu, "GL_KHR_debug"));
   if (can->labels) GL(gpu, GetIntegerv)(GL_MAX_DEBUG_GROUP_STACK_DEPTH, &can->debug_groups);
   can->float_blend = true;
-  can->fixed_restart = can->version >= 43;
+  function =
+      !gpu->desc.get_proc_address || (gpu->storage.PixelTransferf && gpu->storage.TexEnvf && gpu->storage.GetTexEnvfv);
+  can->fixed = function && can->compatibility;
+  can->stencil_texturing = can->version >= 43 || has_extension(gpu, "GL_ARB_stencil_texturing");
+  find_switches(gpu);
   GL(gpu, GetIntegerv)(GL_MAX_TEXTURE_SIZE, &can->texture_size_max);
   GL(gpu, GetIntegerv)(GL_MAX_ARRAY_TEXTURE_LAYERS, &can->layers_max);
   GL(gpu, GetIntegerv)(GL_MAX_DRAW_BUFFERS, &can->draw_buffers);
@@ -125,17 +163,24 @@ static pn_result check_version(pni_gpu *gpu) {
   return PN_OK;
 }
 
+static pn_gl make_sampler(pni_gpu *gpu, GLenum filter, GLenum wrap) {
+  pn_gl sampler = 0;
+  GL(gpu, GenSamplers)(1, &sampler);
+  const GLenum parameters[][2] = {
+      {GL_TEXTURE_MIN_FILTER, filter}, {GL_TEXTURE_MAG_FILTER, filter},    {GL_TEXTURE_WRAP_S, wrap},
+      {GL_TEXTURE_WRAP_T, wrap},       {GL_TEXTURE_COMPARE_MODE, GL_NONE},
+  };
+  for (size_t i = 0; i < sizeof parameters / sizeof *parameters; i++)
+    GL(gpu, SamplerParameteri)(sampler, parameters[i][0], (GLint)parameters[i][1]);
+  return sampler;
+}
+
 static void make_shared_objects(pni_gpu *gpu) {
   GL(gpu, GenVertexArrays)(1, &gpu->vertex_array);
   GL(gpu, GenFramebuffers)(1, &gpu->framebuffer);
   GL(gpu, GenFramebuffers)(1, &gpu->read_framebuffer);
-  GL(gpu, GenSamplers)(1, &gpu->sampler_nearest);
-  static const GLenum parameters[][2] = {
-      {GL_TEXTURE_MIN_FILTER, GL_NEAREST},   {GL_TEXTURE_MAG_FILTER, GL_NEAREST}, {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE},
-      {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE}, {GL_TEXTURE_COMPARE_MODE, GL_NONE},
-  };
-  for (size_t i = 0; i < sizeof parameters / sizeof *parameters; i++)
-    GL(gpu, SamplerParameteri)(gpu->sampler_nearest, parameters[i][0], (GLint)parameters[i][1]);
+  gpu->sampler_nearest = make_sampler(gpu, GL_NEAREST, GL_CLAMP_TO_EDGE);
+  gpu->sampler_linear = make_sampler(gpu, GL_LINEAR, GL_REPEAT);
 }
 
 static pn_result copy_strings(pni_gpu *gpu) {
@@ -181,7 +226,9 @@ void pni_gpu_close(pni_gpu *gpu, bool abandon) {
     GL(gpu, DeleteFramebuffers)(1, &gpu->framebuffer);
     GL(gpu, DeleteFramebuffers)(1, &gpu->read_framebuffer);
     GL(gpu, DeleteSamplers)(1, &gpu->sampler_nearest);
+    GL(gpu, DeleteSamplers)(1, &gpu->sampler_linear);
   }
+  pni_free(gpu, gpu->plan.replaced);
   pni_free(gpu, gpu->shader_directory);
 }
 

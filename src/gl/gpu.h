@@ -17,9 +17,13 @@ typedef struct {
   bool float_blend;   /* 32-bit float images can be blended: all desktop GL can; OpenGL ES 3 needs an extension */
   bool blend_buffers; /* 4.0: each draw buffer has its own blend function */
   bool indirect;      /* 4.0 or ARB_draw_indirect: draws whose counts lie in a buffer */
-  bool fixed_restart; /* GL_PRIMITIVE_RESTART_FIXED_INDEX, 4.3 */
-  bool targets;       /* 4.5 or ARB_direct_state_access: textures tell what kind they are */
-  bool labels;        /* 4.3 or KHR_debug: objects and passes have names */
+  bool fixed;         /* a compatibility context with the functions of its own state (gl/fixed.h) */
+  GLenum switches[PNI_SWITCHES]; /* that there are, of those that change what is drawn (gl/device.c) */
+  int switch_count;
+  bool stencil_texturing; /* 4.3 or ARB_stencil_texturing: depth-stencil textures can be read as stencil */
+  bool by_name;           /* 4.5 or ARB_direct_state_access: textures are asked without being bound */
+  bool targets;           /* and tell what kind they are */
+  bool labels;            /* 4.3 or KHR_debug: objects and passes have names */
   int texture_size_max, layers_max, draw_buffers, subpixel_bits, clip_distances, sample_mask_words, debug_groups;
 } pni_capabilities;
 
@@ -55,6 +59,16 @@ typedef struct {
   bool blended;     /* blend functions were set */
 } pni_bound;
 
+/* A call that is planned before it draws (gl/plan.h). */
+typedef struct {
+  bool on;         /* nothing is drawn, everything is made */
+  bool keep;       /* textures that are replaced come back if the plan fails */
+  bool made;       /* a texture is new: that it can be drawn into is not known */
+  unsigned number; /* of plans begun */
+  struct pni_replaced *replaced;
+  int count, capacity;
+} pni_plan;
+
 typedef struct pni_gpu {
   pni_gl_table gl;
   pni_gl_storage storage;
@@ -72,10 +86,12 @@ typedef struct pni_gpu {
   pn_gl framebuffer;  /* the one the passes draw to */
   pn_gl read_framebuffer;
   pn_gl sampler_nearest; /* no filtering, clamped, no comparison */
-  bool labelled;         /* these four are */
+  pn_gl sampler_linear;  /* linear, repeated */
+  bool labelled;         /* these five are */
   bool group_room;       /* for a debug group beside the host's */
   pni_program *programs;
 
+  pni_plan plan;
   pni_bound bound;
   const pni_host_state *host; /* what the host left, at entry; NULL: not read, or no longer so */
   const pni_program *program; /* of the pass that has begun */

@@ -13,7 +13,9 @@ static void set_units(pni_gpu *gpu, pn_gl program, const pni_host_sampler *sampl
   GL(gpu, UseProgram)(program);
   for (int i = 0; i < count; i++)
     GL(gpu, Uniform1i)(GL(gpu, GetUniformLocation)(program, samplers[i].name), samplers[i].unit);
-  GL(gpu, UseProgram)((GLuint)before);
+  /* A program that the host has deleted lives only as long as it is current. */
+  if (before && GL(gpu, IsProgram)((GLuint)before)) GL(gpu, UseProgram)((GLuint)before);
+  else GL(gpu, UseProgram)(0);
 }
 
 static void bind_textures(pni_gpu *gpu, const pni_host_sampler *samplers, int count) {
@@ -28,15 +30,19 @@ static void bind_textures(pni_gpu *gpu, const pni_host_sampler *samplers, int co
   GL(gpu, ActiveTexture)((GLenum)unit);
 }
 
-bool pni_host_program_bind(pni_gpu *gpu, pn_gl program, const pni_buffer *block, int binding,
+static GLuint block_of(pni_gpu *gpu, pn_gl program) {
+  GLint linked = GL_FALSE;
+  if (GL(gpu, IsProgram)(program)) GL(gpu, GetProgramiv)(program, GL_LINK_STATUS, &linked);
+  return linked ? GL(gpu, GetUniformBlockIndex)(program, "pn_block") : GL_INVALID_INDEX;
+}
+
+bool pni_host_program_fits(pni_gpu *gpu, pn_gl program) { return block_of(gpu, program) != GL_INVALID_INDEX; }
+
+void pni_host_program_bind(pni_gpu *gpu, pn_gl program, const pni_buffer *block, int binding,
                            const pni_host_sampler *samplers, int count) {
-  bool linked = GL(gpu, IsProgram)(program);
-  GLuint index = linked ? GL(gpu, GetUniformBlockIndex)(program, "pn_block") : GL_INVALID_INDEX;
-  if (index == GL_INVALID_INDEX) return false;
   set_units(gpu, program, samplers, count);
-  GL(gpu, UniformBlockBinding)(program, index, (GLuint)binding);
+  GL(gpu, UniformBlockBinding)(program, block_of(gpu, program), (GLuint)binding);
   GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, (GLuint)binding, block->id);
   bind_textures(gpu, samplers, count);
   pni_forget(gpu);
-  return true;
 }

@@ -15,9 +15,10 @@ typedef struct {
   const pni_texture *texture; /* NULL: the sampler gets its unit, nothing is bound */
 } pni_host_sampler;
 
-/* Sets samplers and block of a program and binds them; the program and the active unit stay the host's. False, and
- * nothing done, where there is no such program, or it has no block pn_block. */
-bool pni_host_program_bind(pni_gpu *gpu, pn_gl program, const pni_buffer *block, int binding,
+/* Whether there is such a program, linked, with a block pn_block. */
+bool pni_host_program_fits(pni_gpu *gpu, pn_gl program);
+/* Sets samplers and block of one that fits, and binds them; the program and the active unit stay the host's. */
+void pni_host_program_bind(pni_gpu *gpu, pn_gl program, const pni_buffer *block, int binding,
                            const pni_host_sampler *samplers, int count);
 
 #endif

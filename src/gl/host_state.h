@@ -5,6 +5,12 @@
 #include "gl/functions.h"
 #include "gl/limits.h"
 
+/* Of compatibility contexts (gl/fixed.h). */
+typedef struct {
+  GLint clamp_fragment;
+  GLfloat transfer[PNI_TRANSFER_NAMES], bias[PNI_UNITS];
+} pni_fixed_state;
+
 typedef struct {
   GLint program, vertex_array, array_buffer, draw_framebuffer, read_framebuffer, uniform_buffer, pixel_pack,
       pixel_unpack, draw_indirect;
@@ -21,7 +27,8 @@ typedef struct {
   GLint pack[5]; /* alignment, row length, skip rows, skip pixels, swap bytes */
   GLint unpack[5];
   GLboolean clip[PNI_CLIP_DISTANCES_SAVED];
-  GLboolean enabled[PNI_SWITCHES]; /* in the order of pni_switches */
+  GLboolean enabled[PNI_SWITCHES]; /* in the order of pni_capabilities.switches */
+  pni_fixed_state fixed;
 } pni_host_state;
 
 #endif

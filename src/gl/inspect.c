@@ -1,20 +1,10 @@
 #include "gl/inspect.h"
 
 #include "gl/bound.h"
+#include "gl/host_texture.h"
 #include "gl/pass.h"
 
-bool pni_texture_exists(pni_gpu *gpu, pn_gl texture) { return GL(gpu, IsTexture)(texture); }
-
-/* Binding a texture to another one's target is an error. True too where the device cannot tell. */
-static bool has_target(pni_gpu *gpu, pn_gl texture, GLenum target) {
-  GLint is = GL_NONE;
-  if (!pni_texture_exists(gpu, texture)) return false;
-  if (!gpu->can.targets) return true;
-  GL(gpu, GetTextureParameteriv)(texture, GL_TEXTURE_TARGET, &is);
-  return (GLenum)is == target;
-}
-
-bool pni_texture_is_2d(pni_gpu *gpu, pn_gl texture) { return has_target(gpu, texture, GL_TEXTURE_2D); }
+bool pni_texture_is_2d(pni_gpu *gpu, pn_gl texture) { return pni_texture_is(gpu, texture, GL_TEXTURE_2D); }
 
 bool pni_framebuffer_exists(pni_gpu *gpu, pn_gl framebuffer) { return GL(gpu, IsFramebuffer)(framebuffer); }
 
@@ -51,11 +41,9 @@ static void clear_framebuffer(pni_gpu *gpu) {
     GL(gpu, FramebufferTexture2D)(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + i, GL_TEXTURE_2D, 0, 0);
 }
 
-/* GL 3.3 cannot ask a texture for its target, and binding it to the wrong one is an error; attaching it to a
- * framebuffer tells most of what is needed, but not rectangles from 2D. */
 bool pni_inspect_depth(pni_gpu *gpu, pn_gl texture, pni_depth_source *out) {
   GLenum none = GL_NONE;
-  if (!has_target(gpu, texture, GL_TEXTURE_2D) && !has_target(gpu, texture, GL_TEXTURE_2D_MULTISAMPLE)) return false;
+  if (!pni_texture_is_2d(gpu, texture) && !pni_texture_is(gpu, texture, GL_TEXTURE_2D_MULTISAMPLE)) return false;
   clear_framebuffer(gpu);
   GL(gpu, DrawBuffers)(1, &none);
   GL(gpu, FramebufferTexture)(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, texture, 0);
@@ -72,12 +60,29 @@ static void bind_host(pni_gpu *gpu, GLenum target, pn_gl framebuffer) {
   *(target == GL_READ_FRAMEBUFFER ? &gpu->bound.read_framebuffer : &gpu->bound.framebuffer) = framebuffer;
 }
 
+/* Its size, which framebuffers themselves cannot be asked for; as large as there are textures where it is not told. */
+static void read_size(pni_gpu *gpu, pn_gl framebuffer, pni_depth_source *out) {
+  GLenum target = GL_READ_FRAMEBUFFER, point = GL_DEPTH_ATTACHMENT;
+  out->width = out->height = gpu->can.texture_size_max;
+  if (!framebuffer || !gpu->can.by_name) return;
+  GLuint name = (GLuint)attachment_parameter(gpu, target, point, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME);
+  if (attachment_parameter(gpu, target, point, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) == GL_RENDERBUFFER) {
+    GL(gpu, GetNamedRenderbufferParameteriv)(name, GL_RENDERBUFFER_WIDTH, &out->width);
+    GL(gpu, GetNamedRenderbufferParameteriv)(name, GL_RENDERBUFFER_HEIGHT, &out->height);
+  } else {
+    GLint level = attachment_parameter(gpu, target, point, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL);
+    GL(gpu, GetTextureLevelParameteriv)(name, level, GL_TEXTURE_WIDTH, &out->width);
+    GL(gpu, GetTextureLevelParameteriv)(name, level, GL_TEXTURE_HEIGHT, &out->height);
+  }
+}
+
 bool pni_inspect_framebuffer(pni_gpu *gpu, pn_gl framebuffer, pni_depth_source *out) {
   pni_ready(gpu);
   bind_host(gpu, GL_READ_FRAMEBUFFER, framebuffer);
   GLenum status = GL(gpu, CheckFramebufferStatus)(GL_READ_FRAMEBUFFER);
   GLenum point = framebuffer ? GL_DEPTH_ATTACHMENT : GL_DEPTH;
   if (status != GL_FRAMEBUFFER_COMPLETE || !read_depth(gpu, GL_READ_FRAMEBUFFER, point, out)) return false;
+  read_size(gpu, framebuffer, out);
   bind_host(gpu, GL_DRAW_FRAMEBUFFER, framebuffer);
   read_samples(gpu, out);
   return true;
@@ -97,7 +102,7 @@ pn_result pni_copy_depth(pni_gpu *gpu, pn_gl framebuffer, int x, int y, const pn
                    .height = to->height,
                    .depth_use = PNI_DEPTH_WRITE};
   pn_result result = pni_pass_begin(gpu, &pass);
-  if (result != PN_OK) return result;
+  if (result != PN_OK || gpu->plan.on) return result;
   bind_host(gpu, GL_READ_FRAMEBUFFER, framebuffer);
   GL(gpu, BlitFramebuffer)
   (x, y, x + to->width, y + to->height, 0, 0, to->width, to->height, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
@@ -161,7 +166,7 @@ bool pni_inspect_target(pni_gpu *gpu, pn_gl texture, pni_target_kind *out) {
   if (sound) GL(gpu, GetIntegerv)(GL_SAMPLES, &samples);
   GL(gpu, FramebufferTexture2D)(GL_DRAW_FRAMEBUFFER, color, GL_TEXTURE_2D, 0, 0);
   GLenum target = layered ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
-  if (!sound || samples > 0 || !has_target(gpu, texture, target)) return false;
+  if (!sound || samples > 0 || !pni_texture_is(gpu, texture, target)) return false;
   pni_bind_scratch(gpu, target, texture);
   *out = (pni_target_kind){layered != 0, level_parameter(gpu, target, GL_TEXTURE_WIDTH),
                            level_parameter(gpu, target, GL_TEXTURE_HEIGHT),

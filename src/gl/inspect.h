@@ -2,17 +2,17 @@
 #ifndef PNI_GL_INSPECT_H
 #define PNI_GL_INSPECT_H
 
+#include "gl/host_texture.h"
 #include "gl/texture.h"
 
 /* Depth of a texture or a framebuffer. */
 typedef struct {
   int depth_bits, stencil_bits, samples;
+  int width, height; /* of a framebuffer's depth, or more where that cannot be found out */
   bool is_float;
   float at[2]; /* where in a pixel its depth was taken: sample 0 lies beside the pixel's centre */
 } pni_depth_source;
 
-bool pni_texture_exists(pni_gpu *gpu, pn_gl texture);
-/* A 2D texture, as far as the device can tell (4.5). */
 bool pni_texture_is_2d(pni_gpu *gpu, pn_gl texture);
 bool pni_framebuffer_exists(pni_gpu *gpu, pn_gl framebuffer);
 /* False where it is no 2D or 2D multisample texture with depth. */

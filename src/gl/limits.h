@@ -9,7 +9,8 @@ enum {
   PNI_UNIT_PEEL = 6,                /* what a host's draw callback finds the previous layer on */
   PNI_DRAW_BUFFERS_SAVED = 8,
   PNI_CLIP_DISTANCES_SAVED = 8,
-  PNI_SWITCHES = 17 /* capabilities that are switched off */
+  PNI_SWITCHES = 22,      /* capabilities that are switched off, at most */
+  PNI_TRANSFER_NAMES = 12 /* of pixel transfer in compatibility contexts */
 };
 
 #endif

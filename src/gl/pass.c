@@ -89,7 +89,18 @@ static void limit(pni_gpu *gpu, const pni_part *part) {
   if (part) pni_set_scissor(gpu, part->x, part->y, part->width, part->height);
 }
 
+/* What can fail of a pass: its program, and its images where one of them is new. */
+static pn_result plan(pni_gpu *gpu, const pni_pass *pass) {
+  const pni_program *program;
+  gpu->program = NULL; /* nothing below has a name in it */
+  pn_result result = pass->program.fragment ? pni_program_get(gpu, &pass->program, &program) : PN_OK;
+  if (result != PN_OK || !gpu->plan.made) return result;
+  pni_ready(gpu);
+  return attach_all(gpu, pass);
+}
+
 static pn_result set_up(pni_gpu *gpu, const pni_pass *pass, bool fresh) {
+  if (gpu->plan.on) return plan(gpu, pass);
   pni_ready(gpu);
   pni_group(gpu, pass->name);
   gpu->program = NULL;
@@ -109,20 +120,22 @@ pn_result pni_pass_resume(pni_gpu *gpu, const pni_pass *pass) { return set_up(gp
 pn_result pni_pass_program(pni_gpu *gpu, const pni_program_key *key) {
   const pni_program *program;
   pn_result result = pni_program_get(gpu, key, &program);
-  if (result != PN_OK) return result;
+  if (result != PN_OK || gpu->plan.on) return result;
   pni_bind_program(gpu, program->id);
   gpu->program = program;
   gpu->textures_set = 0;
   return PN_OK;
 }
 
-void pni_pass_clockwise(pni_gpu *gpu, bool clockwise) { pni_set_clockwise(gpu, clockwise); }
+void pni_pass_clockwise(pni_gpu *gpu, bool clockwise) {
+  if (!gpu->plan.on) pni_set_clockwise(gpu, clockwise);
+}
 
 pn_result pni_fill(pni_gpu *gpu, const char *name, const pni_pass *where, float value) {
   pni_pass pass = *where;
   pass.name = name;
   pn_result result = pni_pass_begin(gpu, &pass);
-  if (result != PN_OK) return result;
+  if (result != PN_OK || gpu->plan.on) return result;
   const GLfloat values[4] = {value, value, value, value};
   pni_set_scissor_test(gpu, true);
   pni_set_scissor(gpu, 0, 0, pass.width, pass.height);
@@ -180,7 +193,8 @@ void pni_set_texture(pni_gpu *gpu, const char *name, const pni_texture *texture)
 }
 
 void pni_set_host_texture(pni_gpu *gpu, const char *name, pn_gl texture, pni_sampling sampling) {
-  set_sampler(gpu, name, texture, sampling == PNI_SAMPLE_OWN ? 0 : gpu->sampler_nearest);
+  const pn_gl samplers[] = {gpu->sampler_nearest, 0, gpu->sampler_linear};
+  set_sampler(gpu, name, texture, samplers[sampling]);
 }
 
 /* A sampler that was given nothing reads nothing: not what another pass left, which may be what this one draws to. */
@@ -196,6 +210,7 @@ static void unbind_others(pni_gpu *gpu) {
 /* ---- draws ------------------------------------------------------------------------------------------------------- */
 
 static void draw_arrays(pni_gpu *gpu, GLenum mode, int count) {
+  if (gpu->plan.on) return;
   unbind_others(gpu);
   pni_bind_vertex_array(gpu, gpu->vertex_array);
   GL(gpu, DrawArrays)(mode, 0, count);
@@ -209,6 +224,7 @@ void pni_draw_triangles(pni_gpu *gpu, int vertices) { draw_arrays(gpu, GL_TRIANG
 
 void pni_draw_vertices(pni_gpu *gpu, const pni_vertices *vertices, int index_bytes, size_t offset, size_t first,
                        size_t count) {
+  if (gpu->plan.on) return;
   unbind_others(gpu);
   pni_bind_vertex_array(gpu, vertices->id);
   if (!index_bytes) {
@@ -227,9 +243,8 @@ enum { ARGUMENT_BYTES = 16 }; /* four unsigned integers: GL's DrawArraysIndirect
 pn_result pni_counts_take(pni_gpu *gpu, const pni_texture *arguments, pni_buffer *buffer) {
   if (!gpu->can.indirect) return PN_OK;
   size_t bytes = ARGUMENT_BYTES * (size_t)arguments->width;
-  pn_result result = PN_OK;
-  if (buffer->bytes != bytes) result = pni_buffer_fill(gpu, buffer, "counts", PNI_BUFFER_COUNTS, NULL, bytes);
-  if (result != PN_OK) return result;
+  pn_result result = pni_buffer_reserve(gpu, buffer, "counts", PNI_BUFFER_COUNTS, bytes);
+  if (result != PN_OK || gpu->plan.on) return result;
   GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, buffer->id);
   pni_texture_read(gpu, arguments, 0, 0, arguments->width, 1, 4, NULL); /* into the buffer */
   GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, 0);
@@ -237,6 +252,7 @@ pn_result pni_counts_take(pni_gpu *gpu, const pni_texture *arguments, pni_buffer
 }
 
 void pni_draw_counted(pni_gpu *gpu, const pni_buffer *buffer, int index, int most) {
+  if (gpu->plan.on) return;
   if (!gpu->can.indirect) {
     draw_arrays(gpu, GL_TRIANGLES, most);
     return;

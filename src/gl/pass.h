@@ -57,8 +57,8 @@ void pni_set_floats(pni_gpu *gpu, const char *name, const float values[4]);
 void pni_set_matrix3(pni_gpu *gpu, const char *name, const float values[9]);
 void pni_set_matrix4(pni_gpu *gpu, const char *name, const float values[16]);
 void pni_set_texture(pni_gpu *gpu, const char *name, const pni_texture *texture);
-/* A texture of the host's: read texel by texel, or with its own sampling parameters. */
-typedef enum { PNI_SAMPLE_NEAREST, PNI_SAMPLE_OWN } pni_sampling;
+/* A texture of the host's: read texel by texel, with its own sampling parameters, or linearly and repeated. */
+typedef enum { PNI_SAMPLE_NEAREST, PNI_SAMPLE_OWN, PNI_SAMPLE_LINEAR } pni_sampling;
 void pni_set_host_texture(pni_gpu *gpu, const char *name, pn_gl texture, pni_sampling sampling);
 
 /* A triangle that covers the target. */

@@ -1,6 +1,7 @@
 #include "gl/state.h"
 
 #include "gl/bound.h"
+#include "gl/fixed.h"
 #include "gl/label.h"
 
 static void save_blend_functions(pni_gpu *gpu, pni_host_state *state) {
@@ -63,7 +64,7 @@ static void save_raster(pni_gpu *gpu, pni_host_state *state) {
   }
   save_blend_functions(gpu, state);
   for (int i = 0; i < gpu->can.clip_distances; i++) state->clip[i] = GL(gpu, IsEnabled)(GL_CLIP_DISTANCE0 + (GLenum)i);
-  for (int i = 0; i < pni_switch_count(gpu); i++) state->enabled[i] = GL(gpu, IsEnabled)(pni_switches[i]);
+  for (int i = 0; i < gpu->can.switch_count; i++) state->enabled[i] = GL(gpu, IsEnabled)(gpu->can.switches[i]);
 }
 
 void pni_state_save(pni_gpu *gpu, pni_host_state *state) {
@@ -75,40 +76,68 @@ void pni_state_save(pni_gpu *gpu, pni_host_state *state) {
     GL(gpu, GetIntegerv)(pni_pack_names[i], &state->pack[i]);
     GL(gpu, GetIntegerv)(pni_unpack_names[i], &state->unpack[i]);
   }
+  pni_fixed_save(gpu, &state->fixed);
   gpu->host = state;
 }
 
 /* ---- restoring --------------------------------------------------------------------------------------------------- */
 
-/* What is bound without being remembered is always bound back. */
-static void restore_buffers(pni_gpu *gpu, const pni_host_state *state) {
-  GL(gpu, BindBuffer)(GL_ARRAY_BUFFER, (GLuint)state->array_buffer);
-  GL(gpu, BindBuffer)(GL_UNIFORM_BUFFER, (GLuint)state->uniform_buffer); /* after the indexed one, which sets it too */
-  if (gpu->can.indirect) GL(gpu, BindBuffer)(GL_DRAW_INDIRECT_BUFFER, (GLuint)state->draw_indirect);
+/* Names that no longer exist are not bound again. What the library itself deletes are textures; but a program that its
+ * host has deleted lives only as long as it is current; and in a scope, or a callback, hosts delete what they like. */
+
+static GLuint living_texture(pni_gpu *gpu, GLint texture) {
+  return texture && GL(gpu, IsTexture)((GLuint)texture) ? (GLuint)texture : 0;
 }
 
-static void restore_block(pni_gpu *gpu, const pni_host_state *state) {
-  GLuint buffer = (GLuint)state->block_buffer;
-  if (state->block_size > 0) GL(gpu, BindBufferRange)
+static GLuint living_program(pni_gpu *gpu, GLint program) {
+  return program && GL(gpu, IsProgram)((GLuint)program) ? (GLuint)program : 0;
+}
+
+static GLuint living_array(pni_gpu *gpu, GLint array, bool whole) {
+  return !whole || (array && GL(gpu, IsVertexArray)((GLuint)array)) ? (GLuint)array : 0;
+}
+
+static GLuint living_buffer(pni_gpu *gpu, GLint buffer, bool whole) {
+  return !whole || (buffer && GL(gpu, IsBuffer)((GLuint)buffer)) ? (GLuint)buffer : 0;
+}
+
+static GLuint living_framebuffer(pni_gpu *gpu, GLint framebuffer, bool whole) {
+  return !whole || (framebuffer && GL(gpu, IsFramebuffer)((GLuint)framebuffer)) ? (GLuint)framebuffer : 0;
+}
+
+static GLuint living_sampler(pni_gpu *gpu, GLint sampler, bool whole) {
+  return !whole || (sampler && GL(gpu, IsSampler)((GLuint)sampler)) ? (GLuint)sampler : 0;
+}
+
+static void bind_buffer(pni_gpu *gpu, GLenum target, GLint buffer, bool whole) {
+  GL(gpu, BindBuffer)(target, living_buffer(gpu, buffer, whole));
+}
+
+/* What is bound without being remembered is always bound back. */
+static void restore_buffers(pni_gpu *gpu, const pni_host_state *state, bool whole) {
+  bind_buffer(gpu, GL_ARRAY_BUFFER, state->array_buffer, whole);
+  bind_buffer(gpu, GL_UNIFORM_BUFFER, state->uniform_buffer, whole); /* after the indexed one, which sets it too */
+  if (gpu->can.indirect) bind_buffer(gpu, GL_DRAW_INDIRECT_BUFFER, state->draw_indirect, whole);
+}
+
+static void restore_block(pni_gpu *gpu, const pni_host_state *state, bool whole) {
+  GLuint buffer = living_buffer(gpu, state->block_buffer, whole);
+  if (buffer && state->block_size > 0) GL(gpu, BindBufferRange)
   (GL_UNIFORM_BUFFER, PNI_BLOCK_BINDING, buffer, (GLintptr)state->block_start, (GLsizeiptr)state->block_size);
   else GL(gpu, BindBufferBase)(GL_UNIFORM_BUFFER, PNI_BLOCK_BINDING, buffer); }
 
 static void restore_bindings(pni_gpu *gpu, const pni_host_state *s, bool whole) {
   const pni_bound *b = &gpu->bound;
-  if (whole || b->program != (pn_gl)s->program) GL(gpu, UseProgram)((GLuint)s->program);
-  if (whole || b->vertex_array != (pn_gl)s->vertex_array) GL(gpu, BindVertexArray)((GLuint)s->vertex_array);
+  if (whole || b->program != (pn_gl)s->program) GL(gpu, UseProgram)(living_program(gpu, s->program));
+  if (whole || b->vertex_array != (pn_gl)s->vertex_array)
+    GL(gpu, BindVertexArray)(living_array(gpu, s->vertex_array, whole));
   if (whole || b->framebuffer != (pn_gl)s->draw_framebuffer)
-    GL(gpu, BindFramebuffer)(GL_DRAW_FRAMEBUFFER, (GLuint)s->draw_framebuffer);
+    GL(gpu, BindFramebuffer)(GL_DRAW_FRAMEBUFFER, living_framebuffer(gpu, s->draw_framebuffer, whole));
   if (whole || b->read_framebuffer != (pn_gl)s->read_framebuffer)
-    GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, (GLuint)s->read_framebuffer);
-  if (whole || b->block != (pn_gl)-1) restore_block(gpu, s);
-  if (whole || s->pixel_pack) GL(gpu, BindBuffer)(GL_PIXEL_PACK_BUFFER, (GLuint)s->pixel_pack);
-  if (whole || s->pixel_unpack) GL(gpu, BindBuffer)(GL_PIXEL_UNPACK_BUFFER, (GLuint)s->pixel_unpack);
-}
-
-/* What the call deleted while it was bound stays unbound, as GL has it. */
-static GLuint living(pni_gpu *gpu, GLint texture) {
-  return texture && GL(gpu, IsTexture)((GLuint)texture) ? (GLuint)texture : 0;
+    GL(gpu, BindFramebuffer)(GL_READ_FRAMEBUFFER, living_framebuffer(gpu, s->read_framebuffer, whole));
+  if (whole || b->block != (pn_gl)-1) restore_block(gpu, s, whole);
+  if (whole || s->pixel_pack) bind_buffer(gpu, GL_PIXEL_PACK_BUFFER, s->pixel_pack, whole);
+  if (whole || s->pixel_unpack) bind_buffer(gpu, GL_PIXEL_UNPACK_BUFFER, s->pixel_unpack, whole);
 }
 
 static void restore_textures(pni_gpu *gpu, const pni_host_state *state, bool whole) {
@@ -117,10 +146,10 @@ static void restore_textures(pni_gpu *gpu, const pni_host_state *state, bool who
     if (!whole && !(gpu->bound.touched >> unit & 1)) continue;
     any = true;
     GL(gpu, ActiveTexture)(GL_TEXTURE0 + (GLenum)unit);
-    GL(gpu, BindTexture)(GL_TEXTURE_2D, living(gpu, state->texture_2d[unit]));
-    GL(gpu, BindTexture)(GL_TEXTURE_2D_ARRAY, living(gpu, state->texture_array[unit]));
-    GL(gpu, BindTexture)(GL_TEXTURE_2D_MULTISAMPLE, (GLuint)state->texture_multisample[unit]);
-    GL(gpu, BindSampler)((GLuint)unit, (GLuint)state->sampler[unit]);
+    GL(gpu, BindTexture)(GL_TEXTURE_2D, living_texture(gpu, state->texture_2d[unit]));
+    GL(gpu, BindTexture)(GL_TEXTURE_2D_ARRAY, living_texture(gpu, state->texture_array[unit]));
+    GL(gpu, BindTexture)(GL_TEXTURE_2D_MULTISAMPLE, living_texture(gpu, state->texture_multisample[unit]));
+    GL(gpu, BindSampler)((GLuint)unit, living_sampler(gpu, state->sampler[unit], whole));
   }
   if (any || gpu->bound.active_unit >= 0) GL(gpu, ActiveTexture)((GLenum)state->active_texture);
 }
@@ -154,9 +183,9 @@ static bool current_switch(const pni_bound *b, GLenum name) {
 static void restore_switches(pni_gpu *gpu, const pni_host_state *state, bool whole) {
   for (int i = 0; i < gpu->can.clip_distances; i++)
     if (whole || state->clip[i]) pni_switch(gpu, GL_CLIP_DISTANCE0 + (GLenum)i, state->clip[i]);
-  for (int i = 0; i < pni_switch_count(gpu); i++)
-    if (whole || state->enabled[i] != current_switch(&gpu->bound, pni_switches[i]))
-      pni_switch(gpu, pni_switches[i], state->enabled[i]);
+  for (int i = 0; i < gpu->can.switch_count; i++)
+    if (whole || state->enabled[i] != current_switch(&gpu->bound, gpu->can.switches[i]))
+      pni_switch(gpu, gpu->can.switches[i], state->enabled[i]);
 }
 
 static void restore_polygon_mode(pni_gpu *gpu, const pni_host_state *state) {
@@ -210,8 +239,9 @@ void pni_state_restore(pni_gpu *gpu, const pni_host_state *state, bool whole) {
     restore_others(gpu, state, whole);
     restore_blending(gpu, state, whole);
     restore_switches(gpu, state, whole);
+    pni_fixed_restore(gpu, state, whole);
   }
-  restore_buffers(gpu, state);
+  restore_buffers(gpu, state, whole);
 }
 
 void pni_state_reset(pni_gpu *gpu) {

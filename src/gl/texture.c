@@ -96,6 +96,51 @@ static bool same_shape(const pni_texture *a, const pni_texture *b) {
          a->levels == b->levels;
 }
 
+static void delete_texture(pni_gpu *gpu, pni_texture *texture) {
+  if (!texture->id) return;
+  pni_texture_gone(gpu, texture->id);
+  GL(gpu, DeleteTextures)(1, &texture->id);
+  pni_memory_give(gpu, texture->bytes);
+  *texture = (pni_texture){0};
+}
+
+/* ---- textures that replace others while a call is planned -------------------------------------------------------- */
+
+typedef struct pni_replaced {
+  pni_texture *at, before; /* before: id 0 where there was none */
+} pni_replaced;
+
+/* Room for one more, before anything is made. */
+static bool room_to_replace(pni_gpu *gpu) {
+  pni_plan *plan = &gpu->plan;
+  if (!plan->keep || plan->count < plan->capacity) return true;
+  int more = plan->capacity ? 2 * plan->capacity : 16;
+  pni_replaced *grown = pni_reallocate(gpu, plan->replaced, (size_t)more * sizeof *grown);
+  if (!grown) return false;
+  plan->replaced = grown;
+  plan->capacity = more;
+  return true;
+}
+
+static void replace(pni_gpu *gpu, pni_texture *texture, const pni_texture *made) {
+  pni_plan *plan = &gpu->plan;
+  plan->made = true;
+  if (plan->keep) plan->replaced[plan->count++] = (pni_replaced){texture, *texture};
+  else delete_texture(gpu, texture);
+  *texture = *made;
+}
+
+void pni_textures_settle(pni_gpu *gpu, bool replaced) {
+  pni_plan *plan = &gpu->plan;
+  while (plan->count > 0) {
+    pni_replaced *r = &plan->replaced[--plan->count];
+    delete_texture(gpu, replaced ? &r->before : r->at);
+    if (!replaced) *r->at = r->before;
+  }
+}
+
+/* ---- making ------------------------------------------------------------------------------------------------------ */
+
 pn_result pni_texture_shape(pni_gpu *gpu, pni_texture *texture, const char *label, pni_format format, int width,
                             int height, int layers, int levels) {
   pni_texture made = {.format = format, .width = width, .height = height, .layers = layers, .levels = levels};
@@ -105,7 +150,7 @@ pn_result pni_texture_shape(pni_gpu *gpu, pni_texture *texture, const char *labe
     return pni_fail(gpu, PN_ERROR_UNSUPPORTED, PN_MESSAGE_FRAMEBUFFER, "this device has no texture of %d x %d x %d",
                     width, height, layers);
   made.bytes = texture_bytes(&made);
-  pn_result result = pni_memory_take(gpu, made.bytes);
+  pn_result result = room_to_replace(gpu) ? pni_memory_take(gpu, made.bytes) : PN_ERROR_OUT_OF_MEMORY;
   if (result != PN_OK) return result;
   pni_ready(gpu);
   GL(gpu, GenTextures)(1, &made.id);
@@ -116,19 +161,22 @@ pn_result pni_texture_shape(pni_gpu *gpu, pni_texture *texture, const char *labe
     pni_texture_free(gpu, &made, result == PN_ERROR_CONTEXT_LOST);
     return result;
   }
-  pni_texture_free(gpu, texture, false);
-  *texture = made;
+  replace(gpu, texture, &made);
   return PN_OK;
 }
 
 void pni_texture_free(pni_gpu *gpu, pni_texture *texture, bool abandon) {
   if (!texture->id) return;
   if (!abandon) {
-    pni_texture_gone(gpu, texture->id);
-    GL(gpu, DeleteTextures)(1, &texture->id);
+    delete_texture(gpu, texture);
+    return;
   }
   pni_memory_give(gpu, texture->bytes);
   memset(texture, 0, sizeof *texture);
+}
+
+void pni_texture_spare(pni_gpu *gpu, pni_texture *texture) {
+  if (!gpu->plan.on) pni_texture_free(gpu, texture, false);
 }
 
 void pni_texture_describe(const pni_texture *t, pn_image *out) {
@@ -141,6 +189,7 @@ pni_image pni_image_of(const pni_texture *texture, int level, int layer) {
 }
 
 void pni_texture_limit(pni_gpu *gpu, const pni_texture *texture, int first, int last) {
+  if (gpu->plan.on) return;
   pni_bind_scratch(gpu, target_of(texture), texture->id);
   GL(gpu, TexParameteri)(target_of(texture), GL_TEXTURE_BASE_LEVEL, first);
   GL(gpu, TexParameteri)(target_of(texture), GL_TEXTURE_MAX_LEVEL, last);
@@ -157,6 +206,13 @@ void pni_texture_write(pni_gpu *gpu, const pni_texture *t, const void *texels, s
   if (rows) GL(gpu, TexSubImage2D)(GL_TEXTURE_2D, 0, 0, 0, t->width, (GLsizei)rows, info->layout, info->type, texels);
   if (rest) GL(gpu, TexSubImage2D)
   (GL_TEXTURE_2D, 0, 0, (GLint)rows, (GLsizei)rest, 1, info->layout, info->type, last);
+}
+
+void pni_texture_write_row(pni_gpu *gpu, const pni_texture *t, int row, const void *texels, int count) {
+  const format_info *info = &formats[t->format];
+  pni_ready(gpu);
+  pni_bind_scratch(gpu, GL_TEXTURE_2D, t->id);
+  GL(gpu, TexSubImage2D)(GL_TEXTURE_2D, 0, 0, row, count, 1, info->layout, info->type, texels);
 }
 
 void pni_texture_write_from(pni_gpu *gpu, const pni_texture *t, pn_gl buffer, size_t offset, size_t count) {
@@ -187,6 +243,7 @@ void pni_texture_read(pni_gpu *gpu, const pni_texture *texture, int level, int l
   static const GLenum floats[] = {0, GL_RED, GL_RG, 0, GL_RGBA};
   static const GLenum integers[] = {0, GL_RED_INTEGER, GL_RG_INTEGER, 0, GL_RGBA_INTEGER};
   bool integer = formats[texture->format].type == GL_UNSIGNED_INT;
+  if (gpu->plan.on) return;
   pni_read_from(gpu, texture, level, layer);
   GL(gpu, ReadPixels)
   (0, 0, width, height, (integer ? integers : floats)[channels], integer ? GL_UNSIGNED_INT : GL_FLOAT, out);
@@ -205,6 +262,7 @@ static void blit_depth(pni_gpu *gpu, const pni_texture *from, const pni_texture 
 }
 
 void pni_copy_to_layer(pni_gpu *gpu, const pni_texture *from, const pni_texture *to, int layer) {
+  if (gpu->plan.on) return;
   pni_read_from(gpu, from, 0, 0);
   if (is_depth(from)) {
     blit_depth(gpu, from, to, layer);

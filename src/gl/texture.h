@@ -37,12 +37,18 @@ typedef struct {
 pn_result pni_texture_shape(pni_gpu *gpu, pni_texture *texture, const char *label, pni_format format, int width,
                             int height, int layers, int levels);
 void pni_texture_free(pni_gpu *gpu, pni_texture *texture, bool abandon);
+/* Frees what is no longer needed; not while a call is planned, which may fail yet. */
+void pni_texture_spare(pni_gpu *gpu, pni_texture *texture);
+/* The end of a plan (gl/plan.h): textures that were replaced go, or else come back. */
+void pni_textures_settle(pni_gpu *gpu, bool replaced);
 /* As the host is told of it. */
 void pni_texture_describe(const pni_texture *texture, pn_image *out);
 
 /* Writes count texels of a 2D texture row by row, from its origin on; texels in its format's own layout. */
 void pni_texture_write(pni_gpu *gpu, const pni_texture *texture, const void *texels, size_t count);
-/* The same from a buffer, offset bytes in it. */
+/* Count texels of one row, from its first on. */
+void pni_texture_write_row(pni_gpu *gpu, const pni_texture *texture, int row, const void *texels, int count);
+/* As pni_texture_write from a buffer, offset bytes in it. */
 void pni_texture_write_from(pni_gpu *gpu, const pni_texture *texture, pn_gl buffer, size_t offset, size_t count);
 /* Only these levels can be read until the next call: a pass that draws one must not read it. */
 void pni_texture_limit(pni_gpu *gpu, const pni_texture *texture, int first, int last);
@@ -51,7 +57,7 @@ void pni_texture_limit(pni_gpu *gpu, const pni_texture *texture, int first, int 
 pni_image pni_image_of(const pni_texture *texture, int level, int layer);
 
 /* Reads the first width x height texels of a level and layer, which waits for the GPU; channels: as many as out
- * wants. Floats from float formats, unsigned integers from integer ones. */
+ * wants. Floats from float formats, unsigned integers from integer ones. While a call is planned out stays as it is. */
 void pni_texture_read(pni_gpu *gpu, const pni_texture *texture, int level, int layer, int width, int height,
                       int channels, void *out);
 

@@ -30,10 +30,12 @@ static void to_light(const fitting *f, const double corners[8][3], double out[8]
 
 /* ---- distances --------------------------------------------------------------------------------------------------- */
 
+double pni_fit_range(const pni_fit_request *request) { return is_parallel(request) ? 0 : request->range; }
+
 static bool too_far(const fitting *f, const double p[8][3]) {
-  double range = f->request->range, least = INFINITY;
+  double range = pni_fit_range(f->request), least = INFINITY;
   for (int i = 0; i < 8; i++) least = fmin(least, p[i][2]);
-  return range > 0 && !is_parallel(f->request) && least > range;
+  return range > 0 && least > range;
 }
 
 static void look_at_distance(void *user, const double corners[8][3]) {
@@ -263,6 +265,18 @@ static bool clamp_opening(const fitting *f, pni_fit_result *out) {
   return cut;
 }
 
+/* All of it has to be floats, and their products with the size of a map. */
+static void keep_finite(pni_fit_result *out) {
+  const double most = 1e30;
+  double *numbers[] = {&out->bounds[0], &out->bounds[1], &out->bounds[2], &out->bounds[3], &out->w_reach, &out->w_near};
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) *numbers[i] = fmin(fmax(*numbers[i], -most), most);
+  for (int i = 0; i < 2; i++)
+    if (!(out->bounds[i] < out->bounds[i + 2])) out->bounds[i] = out->bounds[i + 2] - 1e-3 * most;
+  out->w_far = fmin(fmax(out->w_far, -most), most);
+  double wide = 1e-6 * fmax(fabs(out->w_near), fabs(out->w_far));
+  if (!(out->w_near - out->w_far > 0)) out->w_far = out->w_near - fmin(fmax(wide, 1e-30), fabs(out->w_near) / 2);
+}
+
 void pni_fit_maps(const pn_casters *casters, uint32_t groups, const pni_fit_request *request, pni_fit_result *out) {
   fitting f = {.request = request, .light_from_scene = pni_light_from_scene(request->frame)};
   for (int i = 0; i < 3; i++) {
@@ -292,6 +306,7 @@ void pni_fit_maps(const pn_casters *casters, uint32_t groups, const pni_fit_requ
   }
   clamp_opening(&f, out); /* what snapping put beyond the limit is empty */
   snap_depth(&f, out);
+  keep_finite(out);
   make_tiles(request, out);
 }
 

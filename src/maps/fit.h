@@ -37,6 +37,9 @@ typedef struct {
  * the texels between. */
 void pni_fit_snap(double *low, double *high);
 
+/* Casters wholly beyond it cast nothing; 0: no limit. A sun has no distance. */
+double pni_fit_range(const pni_fit_request *request);
+
 void pni_fit_maps(const pn_casters *casters, uint32_t groups, const pni_fit_request *request, pni_fit_result *out);
 
 /* The texels of a tile that layers past the first are drawn over when they hold only this share of the fit's width and

@@ -15,9 +15,9 @@ static void free_textures(pni_gpu *gpu, pni_maps *maps, bool abandon) {
 /* What another technique wanted is not kept. */
 pn_result pni_maps_shape(pni_gpu *gpu, pni_maps *maps, const pni_maps_want *want, int count, int width, int height) {
   int layers = pni_want_layers(want);
-  if (want->range.structure != PNI_RANGE_STACK) pni_texture_free(gpu, &maps->aside, false);
+  if (want->range.structure != PNI_RANGE_STACK) pni_texture_spare(gpu, &maps->aside);
   if (layers == 0) {
-    free_textures(gpu, maps, false);
+    if (!gpu->plan.on) free_textures(gpu, maps, false);
     maps->want = *want;
     return PN_OK;
   }
@@ -26,7 +26,7 @@ pn_result pni_maps_shape(pni_gpu *gpu, pni_maps *maps, const pni_maps_want *want
   for (int i = 0; i < 2 && result == PN_OK; i++) {
     if (want->near_layers > 1)
       result = pni_texture_shape(gpu, &maps->peel[i], "peeled layer", PNI_DEPTH32F, width, height, 0, 1);
-    else pni_texture_free(gpu, &maps->peel[i], false);
+    else pni_texture_spare(gpu, &maps->peel[i]);
   }
   if (result == PN_OK) result = pni_range_shape(gpu, &maps->range, &want->range, layers * count, width, height);
   if (result == PN_OK) maps->want = *want;
@@ -49,6 +49,7 @@ static void axis_row(const pni_matrix *light_from_scene, int row, float out[4]) 
 static float raster_error(const pni_gpu *gpu) { return (float)ldexp(1.0, -gpu->can.subpixel_bits); }
 
 void pni_maps_describe(pni_gpu *gpu, pni_maps *maps, const pni_frame *frame, const pni_emission *emission) {
+  if (gpu->plan.on) return;
   pni_light_block *b = &maps->block;
   memset(b, 0, sizeof *b);
   pni_matrix light_from_scene = pni_light_from_scene(frame);
@@ -137,9 +138,12 @@ static pn_result draw_layer(const drawing *d, pni_image target, int layer, bool 
                           .clip_from_scene = d->clip_from_scene,
                           .cull_from_scene = later ? d->cull_from_scene : d->clip_from_scene,
                           .groups = d->draw->groups,
+                          .range = d->draw->range,
                           .without_host = d->draw->without_host,
                           .peel = peel,
                           .layer = layer};
+  pni_matrix light_from_scene = pni_light_from_scene(d->draw->frame);
+  for (int c = 0; c < 4; c++) draw.distance[c] = light_from_scene.m[4 * c + 2];
   return pni_casters_draw_pass(d->draw->casters, &draw);
 }
 
@@ -179,7 +183,13 @@ static pn_result draw_layers(const drawing *d) {
   return result;
 }
 
+/* What its layers need, in the layers of the first map: nothing is drawn. */
+static pn_result plan_layers(pni_gpu *gpu, const pni_maps *maps, const pni_map_draw *draw) {
+  return draw_layers(&(drawing){.gpu = gpu, .maps = maps, .draw = draw});
+}
+
 pn_result pni_maps_add(pni_gpu *gpu, pni_maps *maps, const pni_map_draw *draw) {
+  if (gpu->plan.on) return plan_layers(gpu, maps, draw);
   int index = (int)maps->block.map_count;
   drawing d = {gpu, maps, draw, index * pni_want_layers(&maps->want), {{0}}, {{0}}};
   pni_matrix clip = pni_clip_from_light(draw->frame->projection, draw->bounds, draw->w_near, draw->w_far, draw->shear);

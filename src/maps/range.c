@@ -18,25 +18,31 @@ static int level_count(int size) {
 
 static int larger(int a, int b) { return a > b ? a : b; }
 
+/* Over quads, a third channel for what is there and a fourth for gaps in depth. */
+static pni_format range_format(const pni_range_kind *kind) {
+  return kind->quads || kind->least_there ? PNI_RGBA32F : PNI_RG32F;
+}
+
 /* The pyramid's first level has a texel for each of the map's, padded to powers of two; the stack has every level at
  * full size, as array layers. */
 pn_result pni_range_shape(pni_gpu *gpu, pni_texture *texture, const pni_range_kind *kind, int layers, int width,
                           int height) {
   if (kind->structure == PNI_RANGE_PYRAMID) {
     int w = power_above(width), h = power_above(height);
-    pni_format format = kind->least_there ? PNI_RGBA32F : PNI_RG32F;
-    return pni_texture_shape(gpu, texture, "range pyramid", format, w, h, layers, level_count(larger(w, h)));
+    return pni_texture_shape(gpu, texture, "range pyramid", range_format(kind), w, h, layers,
+                             level_count(larger(w, h)));
   }
   if (kind->structure == PNI_RANGE_STACK)
-    return pni_texture_shape(gpu, texture, "range stack", PNI_RG32F, width, height,
+    return pni_texture_shape(gpu, texture, "range stack", range_format(kind), width, height,
                              layers * level_count(power_above(larger(width, height))), 1);
-  pni_texture_free(gpu, texture, false);
+  pni_texture_spare(gpu, texture);
   return PN_OK;
 }
 
 /* ---- passes ------------------------------------------------------------------------------------------------------ */
 
-static const float nothing[4] = {PNI_NOTHING, PNI_NOTHING, PNI_EVERYTHING, 1};
+enum { NO_GAP = 16777215 }; /* PN_NO_GAP of gaps.glsl */
+static const float nothing[4] = {PNI_NOTHING, PNI_NOTHING, PNI_EVERYTHING, NO_GAP};
 
 enum { DEFINES = 64 };
 
@@ -100,9 +106,24 @@ pn_result pni_range_reduce(pni_gpu *gpu, const pni_texture *range) { return redu
 
 /* ---- from depth maps --------------------------------------------------------------------------------------------- */
 
+/* Which layer of a map has what this one hides (find_gaps.glsl). Behind the farthest surface nothing lies; what one
+ * peeled layer hides, the next one has as surfaces of its own. */
+static int layer_behind(const pni_maps_want *want, int layer) {
+  enum { HIDES_NOTHING = -1, NOT_KNOWN = -2 };
+  int last = pni_want_layers(want) - 1;
+  if (layer < last) return want->farthest && layer == last - 1 ? last : HIDES_NOTHING;
+  return want->farthest ? HIDES_NOTHING : NOT_KNOWN;
+}
+
+static void set_source(pni_gpu *gpu, const pni_maps *maps, int layer, int level) {
+  int layers = pni_want_layers(&maps->want);
+  pni_set_ints(gpu, "pn_source", layer, level, layer / layers, layer % layers);
+  if (maps->want.range.quads && level == 0)
+    pni_set_ints(gpu, "pn_behind", layer_behind(&maps->want, layer % layers), 0, 0, 0);
+}
+
 static pn_result draw_first(pni_gpu *gpu, pni_maps *maps, int layer) {
   const pni_texture *range = &maps->range;
-  int layers = pni_want_layers(&maps->want);
   char defines[DEFINES];
   pni_pass pass = {.name = "range",
                    .program = range_program(&maps->want.range, true, defines),
@@ -112,7 +133,7 @@ static pn_result draw_first(pni_gpu *gpu, pni_maps *maps, int layer) {
   pni_part part = part_of_level(maps, layer, 0, range->width, range->height);
   pn_result result = begin_part(gpu, &pass, &part);
   if (result != PN_OK || part.width == 0) return result;
-  pni_set_ints(gpu, "pn_source", layer, 0, layer / layers, layer % layers);
+  set_source(gpu, maps, layer, 0);
   pni_set_texture(gpu, "pn_maps", &maps->depth);
   pni_draw_screen(gpu);
   return PN_OK;
@@ -128,7 +149,6 @@ static pn_result build_pyramid(pni_gpu *gpu, pni_maps *maps) {
  * aside and copied in. */
 static pn_result draw_stack(pni_gpu *gpu, pni_maps *maps, int layer, int level, int levels) {
   const pni_texture *range = &maps->range;
-  int layers = pni_want_layers(&maps->want);
   char defines[DEFINES];
   pni_pass pass = {.name = "range stack",
                    .program = range_program(&maps->want.range, level == 0, defines),
@@ -137,7 +157,7 @@ static pn_result draw_stack(pni_gpu *gpu, pni_maps *maps, int layer, int level, 
                    .height = range->height};
   pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
-  pni_set_ints(gpu, "pn_source", layer, level, layer / layers, layer % layers);
+  set_source(gpu, maps, layer, level);
   pni_set_ints(gpu, "pn_place", layer * levels + level - 1, level, 0, 0);
   pni_set_texture(gpu, "pn_maps", &maps->depth);
   pni_set_texture(gpu, "pn_range", range);
@@ -150,7 +170,7 @@ static pn_result build_stack(pni_gpu *gpu, pni_maps *maps) {
   const pni_texture *range = &maps->range;
   int levels = level_count(power_above(larger(range->width, range->height)));
   pn_result result =
-      pni_texture_shape(gpu, &maps->aside, "range stack, aside", PNI_RG32F, range->width, range->height, 0, 1);
+      pni_texture_shape(gpu, &maps->aside, "range stack, aside", range->format, range->width, range->height, 0, 1);
   for (int layer = 0; layer < range->layers / levels; layer++)
     for (int level = 0; level < levels && result == PN_OK; level++)
       result = draw_stack(gpu, maps, layer, level, levels);

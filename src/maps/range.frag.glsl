@@ -1,12 +1,16 @@
-// Largest and smallest w of neighbourhoods, and the smallest beside what is empty (PN_EVERYTHING where all is;
-// pyramids of three channels keep it). A pyramid's level takes 2 x 2 texels of the one below; a stack's level four
-// texels of the one below, half a neighbourhood apart (Bitmask Soft Shadows, Fig. 7). The first level reads the depth
-// map; over quads each texel there stands for itself and its right and upper neighbours.
+// Largest and smallest w of neighbourhoods, the smallest beside what is empty (PN_EVERYTHING where all is), and the
+// gaps in depth (gaps.glsl); the last two where the image has channels for them. A pyramid's level takes 2 x 2 texels
+// of the one below; a stack's level four texels of the one below, half a neighbourhood apart (Bitmask Soft Shadows,
+// Fig. 7). The first level reads the depth map; over quads each texel there stands for itself and its right and upper
+// neighbours.
 #include "shaders/precision.glsl"
 #include "space/limits.glsl"
 #if PN_FIRST
 #include "maps/maps.glsl"
 uniform highp sampler2DArray pn_maps;
+#if PN_QUADS
+#include "maps/find_gaps.glsl"
+#endif
 #else
 uniform highp sampler2DArray pn_range;
 #endif
@@ -14,40 +18,52 @@ uniform ivec4 pn_source; // layer in the array of maps, level drawn, map, layer 
 uniform ivec4 pn_place;  // stack: array layer of the level below, level drawn
 layout(location = 0) out vec4 pn_out;
 
-vec3 pn_join(vec3 a, vec3 b) { return vec3(max(a.x, b.x), min(a.yz, b.yz)); }
+vec4 pn_join(vec4 a, vec4 b) { return vec4(max(a.x, b.x), min(a.yzw, b.yzw)); }
 
 #if PN_FIRST
+float pn_there(float w) { return w > PN_NOTHING ? w : PN_EVERYTHING; }
+
 // Beyond the map nothing is, and the smallest w says so too.
-vec3 pn_texels(ivec2 at, int size) {
-  vec3 range = vec3(PN_NOTHING, PN_EVERYTHING, PN_EVERYTHING);
-  for (int y = 0; y < size; y++)
-    for (int x = 0; x < size; x++) {
-      float w = pn_map_fetch(0, pn_maps, pn_source.z, pn_source.w, at + ivec2(x, y));
-      range = pn_join(range, vec3(w, w, w > PN_NOTHING ? w : PN_EVERYTHING));
-    }
-  return range;
+float pn_w_at(ivec2 at) { return pn_map_fetch(0, pn_maps, pn_source.z, pn_source.w, at); }
+
+#if PN_QUADS
+vec4 pn_range_of(ivec2 at) {
+  float w[16];
+  for (int i = 0; i < 16; i++) w[i] = (0x9009 >> i & 1) != 0 ? PN_NOTHING : pn_w_at(at + ivec2(i % 4, i / 4) - 1);
+  vec4 corners = vec4(w[5], w[6], w[9], w[10]);
+  vec2 two = max(corners.xy, corners.zw);
+  if (max(two.x, two.y) <= PN_NOTHING) return vec4(PN_NOTHING, PN_NOTHING, PN_EVERYTHING, PN_NO_GAP);
+  vec2 least = min(corners.xy, corners.zw);
+  float there = min(min(pn_there(w[5]), pn_there(w[6])), min(pn_there(w[9]), pn_there(w[10])));
+  return vec4(max(two.x, two.y), min(least.x, least.y), there, pn_find_gaps(0, pn_maps, pn_source.z, at, w));
 }
+#else
+vec4 pn_range_of(ivec2 at) {
+  float w = pn_w_at(at);
+  return vec4(w, w, pn_there(w), 0.0);
+}
+#endif
 #endif
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
 #if PN_FIRST
-  vec3 range = pn_texels(at, PN_QUADS + 1);
+  vec4 range = pn_range_of(at);
 #elif PN_STACK
   // Level i lies centred: from 2^(i-1) before the texel to 2^(i-1) - 1 after it. Its four parts of level i - 1 are
   // centred a quarter aside; the first level's parts are the texel and those before it. The border is clamped.
   ivec2 last = textureSize(pn_range, 0).xy - 1;
   int step = pn_place.y > 1 ? 1 << (pn_place.y - 2) : 0;
   ivec2 a = clamp(at - (pn_place.y > 1 ? step : 1), ivec2(0), last), b = clamp(at + step, ivec2(0), last);
-  vec3 range = texelFetch(pn_range, ivec3(a, pn_place.x), 0).rgb;
-  range = pn_join(range, texelFetch(pn_range, ivec3(b.x, a.y, pn_place.x), 0).rgb);
-  range = pn_join(range, texelFetch(pn_range, ivec3(a.x, b.y, pn_place.x), 0).rgb);
-  range = pn_join(range, texelFetch(pn_range, ivec3(b, pn_place.x), 0).rgb);
+  vec4 range = texelFetch(pn_range, ivec3(a, pn_place.x), 0);
+  range = pn_join(range, texelFetch(pn_range, ivec3(b.x, a.y, pn_place.x), 0));
+  range = pn_join(range, texelFetch(pn_range, ivec3(a.x, b.y, pn_place.x), 0));
+  range = pn_join(range, texelFetch(pn_range, ivec3(b, pn_place.x), 0));
 #else
   ivec2 last = textureSize(pn_range, 0).xy - 1;
-  vec3 range = vec3(PN_NOTHING, PN_EVERYTHING, PN_EVERYTHING);
+  vec4 range = vec4(PN_NOTHING, vec3(PN_EVERYTHING));
   for (int i = 0; i < 4; i++)
-    range = pn_join(range, texelFetch(pn_range, ivec3(min(2 * at + ivec2(i & 1, i >> 1), last), pn_source.x), 0).rgb);
+    range = pn_join(range, texelFetch(pn_range, ivec3(min(2 * at + ivec2(i & 1, i >> 1), last), pn_source.x), 0));
 #endif
-  pn_out = vec4(range, 1.0);
+  pn_out = range;
 }

@@ -60,7 +60,7 @@ pn_result pni_receiver_bounds(pn_receiver *receiver, const pni_frame *frame, pni
     to = other;
     other = from;
   } while (width > 1 || height > 1);
-  read_back(gpu, from, region);
+  if (!gpu->plan.on) read_back(gpu, from, region);
   return PN_OK;
 }
 

@@ -4,6 +4,7 @@
 
 #include "gl/host.h"
 #include "gl/inspect.h"
+#include "gl/plan.h"
 
 static pni_gpu *gpu_of(const pn_receiver *receiver) { return &receiver->object.context->gpu; }
 
@@ -41,7 +42,7 @@ static pn_result inspect(pni_gpu *gpu, const pn_receiver_desc *d, pni_depth_sour
     return pni_inspect_depth(gpu, texture, source)
                ? PN_OK
                : pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_DEPTH,
-                          "the depth texture is no 2D or 2D multisample texture with depth");
+                          "depth texture %u is no 2D or 2D multisample texture with depth, or has no level 0", texture);
   if (framebuffer && !pni_framebuffer_exists(gpu, framebuffer))
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_SOURCE, "there is no framebuffer %u", framebuffer);
   if (pni_inspect_framebuffer(gpu, framebuffer, source)) return PN_OK;
@@ -54,9 +55,16 @@ static pn_result inspect(pni_gpu *gpu, const pn_receiver_desc *d, pni_depth_sour
 static pn_result check_values(pni_gpu *gpu, const pn_receiver_desc *d) {
   if ((d->depth_texture != 0) == (d->use_framebuffer != 0))
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_SOURCE,
-                    "one of depth_texture and use_framebuffer must be set");
-  if (!pni_floats_finite(d->view, 16) || !pni_floats_finite(d->projection, 16))
-    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX, "view or projection is not finite");
+                    "%s of depth_texture and use_framebuffer is set", d->depth_texture ? "each" : "none");
+  bool view = pni_floats_finite(d->view, 16);
+  if (!view || !pni_floats_finite(d->projection, 16))
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX, "%s is not finite",
+                    view ? "projection" : "view");
+  const float *range = d->depth_range;
+  bool none = range[0] == 0 && range[1] == 0;
+  if (!none && !(range[0] >= 0 && range[0] <= 1 && range[1] >= 0 && range[1] <= 1 && range[0] != range[1]))
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_RANGE,
+                    "depth range %g, %g: two different numbers in [0, 1]", range[0], range[1]);
   if (!isfinite(d->position_error) || d->position_error < 0)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_POSITION, "position_error %g is negative or not finite",
                     d->position_error);
@@ -74,9 +82,9 @@ static pn_result check_values(pni_gpu *gpu, const pn_receiver_desc *d) {
   return PN_OK;
 }
 
-static pn_result check_view(pni_gpu *gpu, pn_receiver_desc *d, bool multisample) {
-  int limit = gpu->can.texture_size_max, width = limit, height = limit;
-  if (d->depth_texture) pni_inspect_size(gpu, d->depth_texture, multisample, &width, &height);
+static pn_result check_view(pni_gpu *gpu, pn_receiver_desc *d, const pni_depth_source *source) {
+  int width = source->width, height = source->height;
+  if (d->depth_texture) pni_inspect_size(gpu, d->depth_texture, source->samples > 0, &width, &height);
   if (d->width == 0) {
     d->width = width - d->x;
     d->height = height - d->y;
@@ -92,11 +100,15 @@ static pn_result check_companion(pni_gpu *gpu, const pn_receiver_desc *d, pn_gl 
                                  const char *name) {
   if (!texture) return PN_OK;
   int width = 0, height = 0;
-  if (pni_texture_is_2d(gpu, texture)) pni_inspect_size(gpu, texture, false, &width, &height);
+  if (!pni_texture_exists(gpu, texture))
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, message, "there is no %s texture %u", name, texture);
+  if (!pni_texture_is_2d(gpu, texture))
+    return pni_fail(gpu, PN_ERROR_ARGUMENT, message, "%s texture %u is no 2D texture", name, texture);
+  pni_inspect_size(gpu, texture, false, &width, &height);
   int x = d->depth_texture ? d->x : 0, y = d->depth_texture ? d->y : 0;
   if (width >= x + d->width && height >= y + d->height) return PN_OK;
-  return pni_fail(gpu, PN_ERROR_ARGUMENT, message, "the %s texture, %d x %d, does not cover the view", name, width,
-                  height);
+  return pni_fail(gpu, PN_ERROR_ARGUMENT, message, "%s texture %u has %d x %d texels, the view needs %d x %d", name,
+                  texture, width, height, x + d->width, y + d->height);
 }
 
 /* Normals are colours. Half a step of a normalised integer on three axes; an octahedral map stretches it by at most
@@ -124,15 +136,24 @@ static pn_result check_mask(pni_gpu *gpu, const pn_receiver_desc *d) {
 
 /* ---- matrices ---------------------------------------------------------------------------------------------------- */
 
+/* NDC depth of a stored one is scale times it plus offset. */
+static void depth_to_clip(const pn_receiver_desc *d, double *scale, double *offset) {
+  bool whole = d->depth_range[0] == 0 && d->depth_range[1] == 0;
+  double near = d->depth_range[0], far = whole ? 1 : d->depth_range[1];
+  double depth = d->depth_zero_to_one ? 1 : 2;
+  *scale = depth / (far - near);
+  *offset = 1 - depth - near * *scale;
+}
+
 static bool invert_view(const pn_receiver_desc *d, const float at[2], pni_matrix *scene_from_clip,
                         pni_matrix *scene_from_pixel) {
   pni_matrix view = pni_matrix_from_floats(d->view), projection = pni_matrix_from_floats(d->projection);
   pni_matrix clip_from_scene = pni_matrix_multiply(&projection, &view);
   if (!pni_matrix_invert(&clip_from_scene, scene_from_clip)) return false;
-  double depth = d->depth_zero_to_one ? 1 : 2;
+  double scale, offset;
+  depth_to_clip(d, &scale, &offset);
   double x = 2 * (at[0] - 0.5) / d->width - 1, y = 2 * (at[1] - 0.5) / d->height - 1;
-  pni_matrix clip_from_pixel = {
-      {2.0 / d->width, 0, 0, 0, 0, 2.0 / d->height, 0, 0, 0, 0, depth, 0, x, y, 1 - depth, 1}};
+  pni_matrix clip_from_pixel = {{2.0 / d->width, 0, 0, 0, 0, 2.0 / d->height, 0, 0, 0, 0, scale, 0, x, y, offset, 1}};
   *scene_from_pixel = pni_matrix_multiply(scene_from_clip, &clip_from_pixel);
   return true;
 }
@@ -147,6 +168,37 @@ static void find_depth_error(const pni_depth_source *kind, bool reversed, float 
     out[0] = 1e-30f;
     out[1] = 0x1p-21f;
   }
+}
+
+/* ---- the host's textures ----------------------------------------------------------------------------------------- */
+
+/* In pixels of its textures, where the view ends. */
+static void view_end(const pn_receiver_desc *d, int *width, int *height) {
+  *width = (d->depth_texture ? d->x : 0) + d->width;
+  *height = (d->depth_texture ? d->y : 0) + d->height;
+}
+
+pn_result pni_receiver_open(pn_receiver *receiver) {
+  static const char *const names[3] = {"depth", "normal", "mask"};
+  const pn_receiver_desc *d = &receiver->desc;
+  const pn_gl textures[3] = {receiver->copied ? 0 : d->depth_texture, d->normal_texture, d->mask_texture};
+  int width, height;
+  view_end(d, &width, &height);
+  for (int i = 0; i < 3; i++) {
+    pni_host_texture *held = &receiver->held[i];
+    if (!textures[i]) continue;
+    bool there = pni_host_texture_open(gpu_of(receiver), textures[i], false, held);
+    if (there && held->width >= width && held->height >= height && (i > 0 || held->depth_bits > 0)) continue;
+    pni_receiver_close(receiver);
+    return pni_fail(gpu_of(receiver), PN_ERROR_NOT_READY, PN_MESSAGE_RECEIVER_SOURCE,
+                    "the %s texture %u is gone, or no longer what pn_receiver_set saw: it must come first", names[i],
+                    textures[i]);
+  }
+  return PN_OK;
+}
+
+void pni_receiver_close(pn_receiver *receiver) {
+  for (int i = 3; i-- > 0;) pni_host_texture_close(gpu_of(receiver), &receiver->held[i]);
 }
 
 /* ---- set --------------------------------------------------------------------------------------------------------- */
@@ -169,7 +221,7 @@ static pn_result copy_multisample(pn_receiver *receiver, const pn_receiver_desc 
                    .height = d->height,
                    .depth_use = PNI_DEPTH_WRITE};
   result = pni_pass_begin(gpu, &pass);
-  if (result != PN_OK) return result;
+  if (result != PN_OK || gpu->plan.on) return result;
   /* Multisample textures have no sampling parameters, and no sampler object applies to them. */
   pni_set_host_texture(gpu, "pn_samples", d->depth_texture, PNI_SAMPLE_OWN);
   pni_set_ints(gpu, "pn_view", d->x, d->y, d->width, d->height);
@@ -177,13 +229,30 @@ static pn_result copy_multisample(pn_receiver *receiver, const pn_receiver_desc 
   return PN_OK;
 }
 
+static pn_result copy_depth(pn_receiver *receiver, const pn_receiver_desc *d, const pni_depth_source *source) {
+  return d->use_framebuffer ? copy_framebuffer(receiver, d, source) : copy_multisample(receiver, d);
+}
+
+/* Whether depth was drawn with the range that is set now nobody can tell. */
+static void tell_range(pn_receiver *receiver, const pn_receiver_desc *d) {
+  pni_gpu *gpu = gpu_of(receiver);
+  const pni_host_state *host = gpu->host;
+  if (!host || receiver->told_range || d->depth_range[0] != 0 || d->depth_range[1] != 0) return;
+  if (host->depth_range[0] == 0 && host->depth_range[1] == 1) return;
+  receiver->told_range = true;
+  pni_note(gpu, PN_LOG_WARNING, PN_MESSAGE_RECEIVER_RANGE,
+           "glDepthRange is %g, %g: if depth was drawn so, the description's depth_range has to say it",
+           host->depth_range[0], host->depth_range[1]);
+}
+
 static pn_result set_receiver(pn_receiver *receiver, pn_receiver_desc d) {
   pni_gpu *gpu = gpu_of(receiver);
   pni_depth_source source = {0};
   float normal_error = 0;
   pni_matrix scene_from_clip, scene_from_pixel;
+  tell_range(receiver, &d);
   pn_result result = inspect(gpu, &d, &source);
-  if (result == PN_OK) result = check_view(gpu, &d, source.samples > 0);
+  if (result == PN_OK) result = check_view(gpu, &d, &source);
   if (result == PN_OK) result = check_companion(gpu, &d, d.normal_texture, PN_MESSAGE_RECEIVER_NORMAL, "normal");
   if (result == PN_OK) result = check_companion(gpu, &d, d.mask_texture, PN_MESSAGE_RECEIVER_MASK, "mask");
   if (result == PN_OK) result = check_normals(gpu, &d, &normal_error);
@@ -191,11 +260,17 @@ static pn_result set_receiver(pn_receiver *receiver, pn_receiver_desc d) {
   if (result == PN_OK && !invert_view(&d, source.at, &scene_from_clip, &scene_from_pixel))
     result = pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_RECEIVER_MATRIX, "projection times view has no inverse");
   if (result != PN_OK) return result;
-  bool multisample = d.depth_texture && source.samples > 0;
-  if (d.use_framebuffer) result = copy_framebuffer(receiver, &d, &source);
-  if (multisample) result = copy_multisample(receiver, &d);
+  bool copied = d.use_framebuffer || source.samples > 0;
+  if (copied) {
+    pni_plan_begin(gpu, receiver->set);
+    result = pni_plan_end(gpu, copy_depth(receiver, &d, &source));
+    pni_host_texture samples = {0};
+    if (result == PN_OK && d.depth_texture) pni_host_texture_open(gpu, d.depth_texture, true, &samples);
+    if (result == PN_OK) result = copy_depth(receiver, &d, &source);
+    pni_host_texture_close(gpu, &samples);
+  }
   if (result != PN_OK) return result;
-  receiver->copied = d.use_framebuffer || multisample;
+  receiver->copied = copied;
   receiver->desc = d;
   receiver->scene_from_clip = scene_from_clip;
   receiver->scene_from_pixel = scene_from_pixel;

@@ -3,6 +3,7 @@
 #define PNI_RECEIVER_RECEIVER_H
 
 #include "context.h"
+#include "gl/host_texture.h"
 #include "gl/pass.h"
 #include "space/region.h"
 #include "space/rounding.h"
@@ -18,9 +19,11 @@ struct pn_receiver {
   float depth_error[2];        /* of a stored depth: absolute, relative to it */
   float normal_error;          /* angle by which a given normal may be off, radians */
   double view_rounding;        /* scene units: what the host's vertex shader may lose by the view's distance */
-  pni_texture planes;    /* without given normals: how depth goes on around each pixel (receiver/planes.frag.glsl) */
-  bool has_planes;       /* they are this frame's */
-  pni_texture bounds[4]; /* what bounds.c reduces into: two pairs, in turn */
+  pni_texture planes;       /* without given normals: how depth goes on around each pixel (receiver/planes.frag.glsl) */
+  bool has_planes;          /* they are this frame's */
+  pni_texture bounds[4];    /* what bounds.c reduces into: two pairs, in turn */
+  pni_host_texture held[3]; /* while it is open: depth, normals, mask */
+  bool told_range;          /* that glDepthRange may have been another */
 };
 
 /* The stored depth that means nothing was drawn. */
@@ -28,6 +31,11 @@ float pni_receiver_background(const pn_receiver *receiver);
 
 /* Size of the image that visibility is computed at: 1/scale, rounded up. */
 void pni_receiver_low_size(const pn_receiver *receiver, int *width, int *height);
+
+/* Before and after the host's textures are read: whether they are still what pn_receiver_set saw is looked at, and
+ * their parameters are made neutral. After a failure there is nothing to close. One receiver is open at a time. */
+pn_result pni_receiver_open(pn_receiver *receiver);
+void pni_receiver_close(pn_receiver *receiver);
 
 /* What all passes over the view's surfaces share, made once a frame: before the first of them, outside of any pass. */
 pn_result pni_receiver_surfaces(pn_receiver *receiver);

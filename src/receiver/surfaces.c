@@ -60,7 +60,7 @@ pn_result pni_receiver_surfaces(pn_receiver *receiver) {
                    .width = d->width,
                    .height = d->height};
   result = pni_pass_begin(gpu, &pass);
-  if (result != PN_OK) return result;
+  if (result != PN_OK || gpu->plan.on) return result;
   set_depth(receiver, 1);
   pni_draw_screen(gpu);
   receiver->has_planes = true;
@@ -72,7 +72,9 @@ pn_result pni_receiver_surfaces(pn_receiver *receiver) {
 /* The camera's centre in the light's frame: (0, 0, 1, 0) of clip space, where all rays meet, w = 1; or, for parallel
  * rays, the direction to it, away from the background, w = 0. */
 static void find_eye(const pn_receiver *receiver, const pni_matrix *light_from_scene, float eye[4]) {
-  double centre[4] = {0, 0, pni_receiver_background(receiver) > 0.5f ? -1 : 1, 0}, h[4];
+  const float *range = receiver->desc.depth_range;
+  bool flipped = range[0] > range[1];
+  double centre[4] = {0, 0, (pni_receiver_background(receiver) > 0.5f) != flipped ? -1 : 1, 0}, h[4];
   pni_matrix light_from_clip = pni_matrix_multiply(light_from_scene, &receiver->scene_from_clip);
   pni_matrix_apply(&light_from_clip, centre, h);
   double size = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);

@@ -20,7 +20,7 @@ int pn_search_turns = 0;
 
 struct pn_Window {
   ivec2 low, high; // texels, both included
-  vec2 w;          // largest and smallest there
+  vec4 w;           // the range there (pn_join_ranges)
 };
 
 // ---- plane rejection over a box of (s, t, w), relative to the receiver ---------------------------------------------
@@ -34,6 +34,50 @@ vec2 pn_front_range(pn_ShadedPoint r, vec2 low, vec2 high, float dw_least, float
   vec2 lever = max(abs(low), abs(high));
   float slack = r.epsilon_plane + r.sigma * (lever.x + lever.y + r.reach * dw_most);
   return vec2(least, most) - slack;
+}
+
+#define PN_ALL_CORNERS 15 // of a quad, a bit for each
+
+// ---- gaps in depth (docs/space.md) ---------------------------------------------------------------------------------
+
+#if PN_PRIMITIVE != PN_PATCH
+// Whether no light passes between what lies at dw_near and what is seen beside it, down to dw_far, in a box of (s, t)
+// relative to the receiver: from there the nearer surface's edge falls on the farther one by no more than that one is
+// known to go on behind it. gaps: of the box, see maps/gaps.glsl.
+bool pn_goes_on(int light, int map, vec2 low, vec2 high, float dw_far, float dw_near, float gaps) {
+  if (gaps >= PN_ENDLESS_REACH) return true;
+  vec2 lever = max(abs(low), abs(high)) * pn_lights[light].maps[map].density;
+  return max(lever.x, lever.y) * (1.0 - dw_far / dw_near) <= pn_gap_reach(gaps);
+}
+
+
+// Which corners of a quad are taken next, of those left that hide (a bit for each): all where the quad is one
+// surface, else a part that lies on one; where that is steep, one row of it, since the rectangle around corners at
+// different distances hides what none of them does.
+int pn_next_part(float gaps, int left, bool steep) {
+  int corner = (left & 1) != 0 ? 0 : (left & 2) != 0 ? 1 : (left & 4) != 0 ? 2 : 3;
+  int part = pn_gap_part(gaps, corner) & left;
+  return steep ? part & (corner < 2 ? 3 : 12) : part;
+}
+#endif
+
+#if PN_REFINE == 2
+// The range stack keeps its levels as array layers: level i holds largest and smallest w of the 2^i x 2^i texels
+// centred on each texel.
+vec4 pn_stack_at(int light, highp sampler2DArray stack, int map, int layer, int level, ivec2 texel) {
+  int images = pn_array_layer(light, pn_map_count(light) - 1, 0) + pn_map_layers(light, map);
+  int levels = textureSize(stack, 0).z / images;
+  ivec2 at = clamp(texel, ivec2(0), pn_map_size(light, map) - 1);
+  return texelFetch(stack, ivec3(at, pn_array_layer(light, map, layer) * levels + level), 0);
+}
+#endif
+
+vec4 pn_range_of_texel(int light, highp sampler2DArray range, int map, int layer, ivec2 texel) {
+#if PN_REFINE == 2
+  return pn_stack_at(light, range, map, layer, 0, texel);
+#else
+  return texelFetch(range, ivec3(max(texel, ivec2(0)), pn_array_layer(light, map, layer)), 0);
+#endif
 }
 
 // ---- single primitives ---------------------------------------------------------------------------------------------
@@ -82,7 +126,10 @@ vec2 pn_edge(float scale, float near, float far, vec2 share, vec2 inverse) {
   return vec2(min(at.x, at.y), max(at.x, at.y));
 }
 
-pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 first, ivec2 last) {
+// The primitive of a block's four corner samples, or the next part of it. gaps: PN_NO_GAP too where no light passes
+// through them; left: corners not taken yet, those that hide nothing among them. steep: see pn_next_part.
+pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 first, ivec2 last,
+                float gaps, bool steep, inout int left) {
   int array_layer = pn_array_layer(light, map, layer);
   ivec2 size = pn_map_size(light, map), end = min(last, size - 1);
   vec4 depth = vec4(texelFetch(maps, ivec3(first, array_layer), 0).r,
@@ -99,13 +146,20 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map,
                vec4(greaterThan(depth, vec4(0.0))) * (1.0 - vec4(outside));
   vec4 hide = there * vec4(greaterThan(front, vec4(0.0)));
   pn_Quad q;
-  q.whole = hide == vec4(1.0);
+  q.whole = gaps >= PN_ENDLESS_REACH && hide == vec4(1.0);
   // A single corner stands for its quarter of the cell, as a patch would, and like one must rise above what a crease
   // may be.
   vec2 cell = high - low;
   vec4 rise = min(max(abs(s), abs(t)), vec4(max(cell.x, cell.y)));
   if (!q.whole) hide *= vec4(greaterThan(front, rise));
-  q.some = q.whole || (PN_EDGES != 0 && hide != vec4(0.0));
+  ivec4 bits = ivec4(hide) * ivec4(1, 2, 4, 8);
+  left = q.whole || PN_EDGES == 0 ? 0 : left & (bits.x | bits.y | bits.z | bits.w);
+  q.some = q.whole || left != 0;
+  if (!q.whole) {
+    int part = pn_next_part(gaps, left, steep);
+    hide = vec4(ivec4(part) >> ivec4(0, 1, 2, 3) & 1);
+    left &= ~part;
+  }
   vec4 inverse = 1.0 / max(dw, vec4(PN_TINY));
   vec2 scale = 0.5 / pn_extent(light);
   q.x = 0.5 + scale.x * s * inverse;
@@ -123,9 +177,18 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map,
   return q;
 }
 
-void pn_texel_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 first,
-                   ivec2 last, inout pn_Cover c) {
-  pn_Quad q = pn_quad(light, maps, r, map, layer, first, last);
+// The quad of a texel and its right and upper neighbours, or the next part of it.
+void pn_texel_quad(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map,
+                   int layer, ivec2 texel, inout int left, inout pn_Cover c) {
+  vec4 w = pn_range_of_texel(light, range, map, layer, texel);
+  if (w.x <= r.m.z + r.epsilon_w) {
+    left = 0;
+    return;
+  }
+  vec2 low = pn_map_st(light, map, vec2(texel) + 0.5) - r.m.xy;
+  vec2 high = pn_map_st(light, map, vec2(texel) + 1.5) - r.m.xy;
+  bool bridged = pn_goes_on(light, map, low, high, max(w.z - r.m.z, r.epsilon_w), w.x - r.m.z, w.w);
+  pn_Quad q = pn_quad(light, maps, r, map, layer, texel, texel + 1, bridged ? PN_NO_GAP : w.w, w.z < w.x, left);
   if (!q.some) return;
   if (q.whole)
     pn_cover_quad(c, q);
@@ -134,15 +197,6 @@ void pn_texel_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int m
   pn_search_done.z += 1.0;
 }
 #endif
-
-void pn_texel_primitive(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 texel,
-                        inout pn_Cover c) {
-#if PN_PRIMITIVE == PN_PATCH
-  pn_texel_patch(light, maps, r, map, layer, texel, c);
-#else
-  pn_texel_quad(light, maps, r, map, layer, texel, texel + 1, c);
-#endif
-}
 
 // Where a block's primitives begin and end: at texel borders, or for quads at texel centres.
 vec2 pn_block_st(int light, int map, ivec2 texel) {
@@ -169,15 +223,6 @@ void pn_window_texels(int light, pn_ShadedPoint r, int map, float w, out ivec2 l
 }
 
 #if PN_REFINE == 2
-// The range stack keeps its levels as array layers: level i holds largest and smallest w of the 2^i x 2^i texels
-// centred on each texel.
-vec2 pn_stack_at(int light, highp sampler2DArray stack, int map, int layer, int level, ivec2 texel) {
-  int images = pn_array_layer(light, pn_map_count(light) - 1, 0) + pn_map_layers(light, map);
-  int levels = textureSize(stack, 0).z / images;
-  ivec2 at = clamp(texel, ivec2(0), pn_map_size(light, map) - 1);
-  return texelFetch(stack, ivec3(at, pn_array_layer(light, map, layer) * levels + level), 0).rg;
-}
-
 // Level whose neighbourhood is at least that many texels wide.
 int pn_stack_level(int extent) {
   int level = 0;
@@ -185,7 +230,7 @@ int pn_stack_level(int extent) {
   return level;
 }
 
-vec2 pn_window_range(int light, highp sampler2DArray stack, int map, int layer, ivec2 low, ivec2 high, bool four) {
+vec4 pn_window_range(int light, highp sampler2DArray stack, int map, int layer, ivec2 low, ivec2 high, bool four) {
   int extent = max(high.x - low.x, high.y - low.y) + 1;
   if (!four) {
     // The centre of a neighbourhood of even size is half a texel off; over the whole map that does not matter, and
@@ -199,14 +244,14 @@ vec2 pn_window_range(int light, highp sampler2DArray stack, int map, int layer, 
   // texels of a neighbourhood before and after its centre
   int before = (1 << level) / 2, after = (1 << level) - before - 1;
   ivec2 a = low + before, b = max(high - after, low + before);
-  vec2 w = pn_stack_at(light, stack, map, layer, level, a);
-  vec2 w1 = pn_stack_at(light, stack, map, layer, level, ivec2(b.x, a.y));
-  vec2 w2 = pn_stack_at(light, stack, map, layer, level, ivec2(a.x, b.y));
-  vec2 w3 = pn_stack_at(light, stack, map, layer, level, b);
-  return vec2(max(max(w.x, w1.x), max(w2.x, w3.x)), min(min(w.y, w1.y), min(w2.y, w3.y)));
+  vec4 lower = pn_join_ranges(pn_stack_at(light, stack, map, layer, level, a),
+                              pn_stack_at(light, stack, map, layer, level, ivec2(b.x, a.y)));
+  vec4 upper = pn_join_ranges(pn_stack_at(light, stack, map, layer, level, ivec2(a.x, b.y)),
+                              pn_stack_at(light, stack, map, layer, level, b));
+  return pn_join_ranges(lower, upper);
 }
 #elif PN_REFINE == 1
-vec2 pn_window_range(int light, highp sampler2DArray range, int map, int layer, ivec2 low, ivec2 high, bool four) {
+vec4 pn_window_range(int light, highp sampler2DArray range, int map, int layer, ivec2 low, ivec2 high, bool four) {
   return pn_range_over(light, range, map, layer, low, high);
 }
 #endif
@@ -214,7 +259,7 @@ vec2 pn_window_range(int light, highp sampler2DArray range, int map, int layer, 
 // The window, narrowed twice: what casts nearest there decides how wide it must be.
 pn_Window pn_find_window(int light, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer) {
   pn_Window window;
-  window.w = vec2(pn_w_near(light), PN_NOTHING);
+  window.w = vec4(pn_w_near(light), PN_NOTHING, PN_EVERYTHING, PN_NO_GAP);
   pn_window_texels(light, r, map, window.w.x, window.low, window.high);
 #if PN_REFINE > 0
   for (int step = 0; step < 2; step++) {
@@ -234,6 +279,9 @@ bool pn_is_umbra(int light, pn_ShadedPoint r, int map, pn_Window window) {
   vec2 low = pn_block_st(light, map, window.low) - r.m.xy, high = pn_block_st(light, map, window.high + 1) - r.m.xy;
   // not cut off by the map's border
   bool inside = all(lessThanEqual(low, -reach)) && all(greaterThanEqual(high, reach));
+#if PN_PRIMITIVE != PN_PATCH
+  inside = inside && pn_goes_on(light, map, low, high, window.w.y - r.m.z, window.w.x - r.m.z, window.w.w);
+#endif
   return inside && pn_front_range(r, low, high, window.w.y - r.m.z, window.w.x - r.m.z).x > 0.0;
 }
 
@@ -249,17 +297,17 @@ bool pn_is_umbra(int light, pn_ShadedPoint r, int map, pn_Window window) {
 void pn_coarse_patch(int light, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, ivec2 block,
                      int level, inout pn_Cover c) {
 #if PN_REFINE == 2
-  vec2 w = pn_stack_at(light, range, map, layer, level, (block << level) + ((1 << level) >> 1));
+  float w = pn_stack_at(light, range, map, layer, level, (block << level) + ((1 << level) >> 1)).x;
 #else
-  vec2 w = texelFetch(range, ivec3(block, pn_array_layer(light, map, layer)), level).rg;
+  float w = texelFetch(range, ivec3(block, pn_array_layer(light, map, layer)), level).r;
 #endif
-  float dw = w.x - r.m.z;
+  float dw = w - r.m.z;
   if (dw <= r.epsilon_w) return;
   ivec2 first = block << level, last = min((block + 1) << level, pn_map_size(light, map));
   vec2 low = pn_block_st(light, map, first), high = pn_block_st(light, map, last);
   // The plane's largest value over the block is held against the block's largest w.
   if (pn_front_range(r, low - r.m.xy, high - r.m.xy, dw, dw).x <= 0.0) return;
-  pn_add_patch(light, r, low, high, w.x, c);
+  pn_add_patch(light, r, low, high, w, c);
 }
 
 int pn_level_for(ivec2 size, int cap) {
@@ -270,24 +318,41 @@ int pn_level_for(ivec2 size, int cap) {
   return level;
 }
 
+// One primitive, or a part of one: of those left, none when it is done.
 void pn_scan_one(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map,
-                 int layer, ivec2 at, int level,
-                 inout pn_Cover c) {
-  pn_search_done.y += 1.0;
-  if (level == 0)
-    pn_texel_primitive(light, maps, r, map, layer, at, c);
-  else
+                 int layer, ivec2 at, int level, inout int left, inout pn_Cover c) {
+  if (level > 0) {
+    left = 0;
     pn_coarse_patch(light, range, r, map, layer, at, level, c);
+    return;
+  }
+#if PN_PRIMITIVE == PN_PATCH
+  left = 0;
+  pn_texel_patch(light, maps, r, map, layer, at, c);
+#else
+  pn_texel_quad(light, maps, range, r, map, layer, at, left, c);
+#endif
 }
-#define PN_TURN(i) if (x + i <= last.x) pn_scan_one(light, maps, range, r, map, layer, ivec2(x + i, y), level, c);
+
+// A step of the scan: the primitive at a texel of the row, or the next part of it.
+void pn_scan_step(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map,
+                  int layer, int level, inout ivec2 at, int end, inout int left, inout pn_Cover c) {
+  if (at.x > end) return;
+  pn_scan_one(light, maps, range, r, map, layer, at, level, left, c);
+  if (left != 0) return;
+  at.x++;
+  left = PN_ALL_CORNERS;
+  pn_search_done.y += 1.0;
+}
+#define PN_STEP pn_scan_step(light, maps, range, r, map, layer, level, at, last.x, left, c);
 
 void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer,
              pn_Window window, int cap, inout pn_Cover c) {
-  int level = pn_level_for(window.high - window.low + 1, cap);
+  int level = pn_level_for(window.high - window.low + 1, cap), left = PN_ALL_CORNERS;
   ivec2 first = window.low >> level, last = window.high >> level;
-  for (int y = first.y; y <= last.y; y++)
-    for (int x = first.x; x <= last.x; x += PN_ROW) {
-      PN_TURN(0) PN_TURN(1) PN_TURN(2) PN_TURN(3) PN_TURN(4) PN_TURN(5) PN_TURN(6) PN_TURN(7)
+  for (ivec2 at = first; at.y <= last.y; at = ivec2(first.x, at.y + 1))
+    while (at.x <= last.x) {
+      PN_STEP PN_STEP PN_STEP PN_STEP PN_STEP PN_STEP PN_STEP PN_STEP
     }
 }
 #endif
@@ -297,24 +362,34 @@ void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, p
 #if PN_DESCENT
 #define PN_SKIP 0
 #define PN_DOWN 1
-#define PN_LEAF_QUAD 2 // a quad that must be covered exactly
+#define PN_STAY 2 // to be covered by the primitive of its corners
 
 struct pn_Rectangle { vec2 low, high; }; // on the light, 0 to 1
 
+// Where the walk over the pyramid's blocks is.
+struct pn_Walk {
+  ivec2 node, first, last; // block; first and last of the level it starts at
+  int level, top;
+  bool going;
+  int left;         // corners of this block's primitive that are still to be covered; 0: it is to be visited
+  float gaps;       // of that primitive
+  bool steep, exact; // see pn_next_part; whole, it may be covered exactly
+};
+
 // One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Wherever in its range the
 // surface lies, it hides no more than the hull of the block's projections at both ends of the range, and, where it has
-// no hole, no less than what both have in common.
-int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map,
-                   int layer, ivec2 node, int level, float merge, inout pn_Cover c, out pn_Quad quad) {
-  // largest, smallest, that of what is there
-  vec3 dw = texelFetch(range, ivec3(node, pn_array_layer(light, map, layer)), level).rgb - r.m.z;
+// neither hole nor gap, no less than what both have in common.
+int pn_visit_block(int light, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, float merge,
+                   inout pn_Walk walk, inout pn_Cover c) {
+  vec4 block = texelFetch(range, ivec3(walk.node, pn_array_layer(light, map, layer)), walk.level);
+  vec3 dw = block.rgb - r.m.z; // largest, smallest, that of what is there
   vec2 extent = pn_extent(light);
-  vec2 low = pn_block_st(light, map, node << level) - r.m.xy;
-  vec2 high = pn_block_st(light, map, (node + 1) << level) - r.m.xy;
+  vec2 low = pn_block_st(light, map, walk.node << walk.level) - r.m.xy;
+  vec2 high = pn_block_st(light, map, (walk.node + 1) << walk.level) - r.m.xy;
   bool beside = any(greaterThan(low, extent * dw.x)) || any(lessThan(high, -extent * dw.x));
 #if PN_PRIMITIVE == PN_PATCH
   // A single texel is asked at its centre, as the sample it is.
-  vec2 margin = level == 0 ? 0.5 * (high - low) : vec2(0.0);
+  vec2 margin = walk.level == 0 ? 0.5 * (high - low) : vec2(0.0);
   vec2 centre = abs(low + margin), texel = 2.0 * margin;
   float rise = min(max(centre.x, centre.y), max(texel.x, texel.y));
 #else
@@ -330,82 +405,122 @@ int pn_visit_block(int light, highp sampler2DArray maps, highp sampler2DArray ra
   vec2 a0 = clamp(0.5 + scale * low / dw.x, 0.0, 1.0), a1 = clamp(0.5 + scale * low / dw_least, 0.0, 1.0);
   vec2 b0 = clamp(0.5 + scale * high / dw.x, 0.0, 1.0), b1 = clamp(0.5 + scale * high / dw_least, 0.0, 1.0);
   vec2 moved = max(abs(a0 - a1), abs(b0 - b1));
-  bool solid = dw.y > r.epsilon_w && front.x > rise;
+#if PN_PRIMITIVE == PN_PATCH
+  const bool bridged = true;
+#else
+  // Inside the block edges may fall on the light where those of the block are beside it.
+  vec2 shift = scale * max(abs(low), abs(high)) * (1.0 / dw_least - 1.0 / dw.x);
+  bool steep = max(shift.x, shift.y) > merge;
+  bool bridged = !steep || pn_goes_on(light, map, low, high, dw_least, dw.x, block.w);
+#endif
+  bool solid = dw.y > r.epsilon_w && front.x > rise && bridged;
   bool one = solid && max(moved.x, moved.y) <= merge;
-  // A block that is itself no larger on the light than what may be moved is looked at no closer: its corners stand
-  // for it, as a texel's do.
-  vec2 size = scale * (high - low) / max(dw.y, r.epsilon_w);
-  bool leaf = level == 0 || pn_search_turns >= PN_TURNS || PN_PRIMITIVE != PN_PATCH && max(size.x, size.y) <= merge;
   pn_Rectangle most = pn_Rectangle(min(a0, a1), max(b0, b1));
   pn_Rectangle least = pn_Rectangle(max(a0, a1), solid ? min(b0, b1) : vec2(0.0));
 #if PN_PRIMITIVE == PN_PATCH
-  pn_Rectangle as_one = pn_Rectangle(0.5 * (a0 + a1), 0.5 * (b0 + b1));
-#else
-  quad = pn_quad(light, maps, r, map, layer, node << level, (node + 1) << level);
-  pn_Rectangle as_one = pn_Rectangle(quad.low, quad.high);
-#if PN_PRIMITIVE == PN_QUAD
-  one = one || leaf && quad.some;
-#else
-  one = one || leaf && quad.some && !quad.whole;
-#endif
-#endif
-  if (one) most = least = as_one;
+  bool leaf = walk.level == 0 || pn_search_turns >= PN_TURNS;
+  if (one) {
+    most = least = pn_Rectangle(0.5 * (a0 + a1), 0.5 * (b0 + b1));
+    pn_search_done.z += 1.0;
+  }
   bool done = pn_cover_and_ask(c, least.low, least.high, most.low, most.high, one);
-  if (one) pn_search_done.z += 1.0;
-#if PN_PRIMITIVE == PN_QUAD_EXACT
-  if (!done && leaf && quad.whole) return PN_LEAF_QUAD;
-#endif
   return done || leaf ? PN_SKIP : PN_DOWN;
+#else
+  // A block without gaps that is itself no larger on the light than what may be moved is looked at no closer: its
+  // corners stand for it, as a texel's do.
+  vec2 size = scale * (high - low) / max(dw.y, r.epsilon_w);
+  bool leaf = walk.level == 0 || pn_search_turns >= PN_TURNS || bridged && max(size.x, size.y) <= merge;
+  if (pn_cover_and_ask(c, least.low, least.high, most.low, most.high, false)) return PN_SKIP;
+  if (!leaf && !one) return PN_DOWN;
+  walk.left = PN_ALL_CORNERS;
+  walk.gaps = bridged || walk.level > 0 ? PN_NO_GAP : block.w;
+  walk.steep = steep;
+  walk.exact = !one;
+  return PN_STAY;
+#endif
 }
 
-// A step of the walk: down to the first child, or past all last children and then aside. False at the end. Blocks end
-// with as many last children as their coordinates share ones at the low end; counted without a loop, whose turns
-// would count too.
-bool pn_walk(inout ivec2 node, inout int level, int top, ivec2 first, ivec2 last, bool down) {
+// A step of the walk: down to the first child, or past all last children and then aside. Blocks end with as many last
+// children as their coordinates share ones at the low end; counted without a loop, whose turns would count too.
+void pn_walk(inout pn_Walk walk, bool down) {
   if (down) {
-    level--;
-    node <<= 1;
-    return true;
+    walk.level--;
+    walk.node <<= 1;
+    return;
   }
-  int both = node.x & node.y, lowest_zero = ~both & (both + 1);
-  int up = min((floatBitsToInt(float(lowest_zero)) >> 23) - 127, top - level);
-  level += up;
-  node >>= up;
-  if (level < top) {
-    node += (node.x & 1) == 0 ? ivec2(1, 0) : ivec2(-1, 1);
-    return true;
+  int both = walk.node.x & walk.node.y, lowest_zero = ~both & (both + 1);
+  int up = min((floatBitsToInt(float(lowest_zero)) >> 23) - 127, walk.top - walk.level);
+  walk.level += up;
+  walk.node >>= up;
+  if (walk.level < walk.top) {
+    walk.node += (walk.node.x & 1) == 0 ? ivec2(1, 0) : ivec2(-1, 1);
+    return;
   }
-  node = node.x < last.x ? node + ivec2(1, 0) : ivec2(first.x, node.y + 1);
-  return node.y <= last.y;
+  walk.node = walk.node.x < walk.last.x ? walk.node + ivec2(1, 0) : ivec2(walk.first.x, walk.node.y + 1);
+  walk.going = walk.node.y <= walk.last.y;
 }
 
-// Depth first over the blocks that the window touches, without a stack. A quad that is covered exactly takes a turn
-// for each of its rows. Past PN_TURNS turns, over all layers and maps, blocks are looked at no closer.
+void pn_visit(int light, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, float merge,
+              inout pn_Walk walk, inout pn_Cover c) {
+  if (!walk.going || walk.left != 0) return;
+  pn_search_done.y += 1.0;
+  int what = pn_visit_block(light, range, r, map, layer, merge, walk, c);
+  if (what != PN_STAY) pn_walk(walk, what == PN_DOWN);
+}
+#define PN_VISIT pn_visit(light, range, r, map, layer, merge, walk, c);
+
+#if PN_PRIMITIVE != PN_PATCH
+// Covers the primitive that a visit left, or the next part of it; true where that is to be done exactly, row by row.
+bool pn_take_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, inout pn_Walk walk,
+                  inout pn_Cover c, out pn_Quad quad) {
+  ivec2 first = walk.node << walk.level, last = (walk.node + 1) << walk.level;
+  quad = pn_quad(light, maps, r, map, layer, first, last, walk.gaps, walk.steep, walk.left);
+  if (walk.left == 0) pn_walk(walk, false);
+  if (!quad.some) return false;
+#if PN_PRIMITIVE == PN_QUAD_EXACT
+  if (quad.whole && walk.exact) return true;
+#endif
+  pn_cover_rectangle(c, quad.low, quad.high);
+  pn_search_done.z += 1.0;
+  return false;
+}
+#endif
+
+// Depth first over the blocks that the window touches, without a stack. Visits are cheap and many, primitives dear and
+// few, and a turn costs what its dearest lane does: so each turn has several visits, then the primitive that one of
+// them left. A quad that is covered exactly takes a turn for each of its rows. Past PN_TURNS turns, over all layers and
+// maps, blocks are looked at no closer.
 void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer,
                 pn_Window window, float merge, inout pn_Cover c) {
-  int extent = max(window.high.x - window.low.x, window.high.y - window.low.y), top = 0;
-  while ((extent >> top) > 2) top++;
-  ivec2 first = window.low >> top, last = window.high >> top;
-  ivec2 node = first, rows = ivec2(0);
-  int level = top;
-  bool going = true;
-  pn_Quad pending;
-  while (going || rows.x < rows.y) {
+  int extent = max(window.high.x - window.low.x, window.high.y - window.low.y);
+  pn_Walk walk;
+  walk.top = 0;
+  while ((extent >> walk.top) > 2) walk.top++;
+  walk.first = walk.node = window.low >> walk.top;
+  walk.last = window.high >> walk.top;
+  walk.level = walk.top;
+  walk.going = true;
+  walk.left = 0;
+  ivec2 rows = ivec2(0);
+  pn_Quad quad;
+  while (walk.going || rows.x < rows.y) {
     pn_search_turns++;
 #if PN_PRIMITIVE == PN_QUAD_EXACT
     if (rows.x < rows.y) {
-      pn_cover_quad_row(c, pending, rows.x);
+      pn_cover_quad_row(c, quad, rows.x);
       rows.x++;
       continue;
     }
 #endif
-    pn_search_done.y += 1.0;
-    int what = pn_visit_block(light, maps, range, r, map, layer, node, level, merge, c, pending);
-    bool down = what == PN_DOWN;
+    PN_VISIT PN_VISIT PN_VISIT PN_VISIT
+#if PN_PRIMITIVE != PN_PATCH
+    if (walk.left != 0 && pn_take_quad(light, maps, r, map, layer, walk, c, quad)) {
 #if PN_PRIMITIVE == PN_QUAD_EXACT
-    if (what == PN_LEAF_QUAD) rows = pn_quad_rows(pending);
+      rows = pn_quad_rows(quad);
 #endif
-    going = pn_walk(node, level, top, first, last, down) && !pn_is_full(c);
+    }
+#endif
+    if (pn_is_full(c)) break;
   }
 }
 #endif

@@ -1,12 +1,17 @@
 // The search window: texels that can block a receiver, from the light's extent and the nearest caster there, narrowed
 // by the range pyramid.
 #include "gather/shaded_point.glsl"
+#include "maps/gaps.glsl"
 
-// Largest and smallest w in a window of texels (both ends included), from the pyramid whose level i has them over 2^i
+// Largest and smallest w, smallest that is there, gaps in depth (the last two over quads only).
+vec4 pn_join_ranges(vec4 a, vec4 b) { return vec4(max(a.x, b.x), min(a.yzw, b.yzw)); }
+
+// The range of a window of texels (both ends included), from the pyramid whose level i has them over 2^i
 // x 2^i texels. Four samples of the coarsest level that is still no larger than the window.
-vec2 pn_range_over(int light, highp sampler2DArray pyramid, int map, int layer, ivec2 low, ivec2 high) {
+vec4 pn_range_over(int light, highp sampler2DArray pyramid, int map, int layer, ivec2 low, ivec2 high) {
   ivec2 last = pn_map_size(light, map) - 1;
-  if (any(lessThan(high, ivec2(0))) || any(greaterThan(low, last))) return vec2(PN_NOTHING);
+  if (any(lessThan(high, ivec2(0))) || any(greaterThan(low, last)))
+    return vec4(vec2(PN_NOTHING), PN_EVERYTHING, PN_NO_GAP);
   low = max(low, ivec2(0));
   high = min(high, last);
   int extent = max(high.x - low.x, high.y - low.y);
@@ -16,11 +21,10 @@ vec2 pn_range_over(int light, highp sampler2DArray pyramid, int map, int layer, 
   ivec2 a = low >> level, b = high >> level;
   // The window may touch three blocks along an axis where it is not aligned; the one between is then read as well.
   ivec2 c = (a + b) >> 1;
-  vec2 range = vec2(PN_NOTHING, PN_EVERYTHING);
+  vec4 range = vec4(PN_NOTHING, vec3(PN_EVERYTHING));
   for (int i = 0; i < 9; i++) {
     ivec2 at = ivec2(i % 3 == 0 ? a.x : i % 3 == 1 ? c.x : b.x, i / 3 == 0 ? a.y : i / 3 == 1 ? c.y : b.y);
-    vec2 w = texelFetch(pyramid, ivec3(at, array_layer), level).rg;
-    range = vec2(max(range.x, w.x), min(range.y, w.y));
+    range = pn_join_ranges(range, texelFetch(pyramid, ivec3(at, array_layer), level));
   }
   return range;
 }

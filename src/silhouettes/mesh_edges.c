@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "gl/host.h"
+#include "gl/plan.h"
 #include "silhouettes/edges.h"
 
 /* PNI_EDGE_ROW and PNI_POSITION_ROW; a test holds them together. */
@@ -61,6 +62,20 @@ static uint32_t *read_indices(pni_gpu *gpu, const pni_mesh_data *mesh) {
   return done ? out : NULL;
 }
 
+/* Hosts delete buffers, or fill them anew with less. */
+static pn_result check_buffers(pni_gpu *gpu, const pni_mesh_data *mesh) {
+  pn_span p = positions_of(mesh);
+  size_t indices = mesh->index_bytes && !mesh->own_indices.id ? mesh->draw_count * (size_t)mesh->index_bytes : 0;
+  bool there =
+      pni_buffer_exists(gpu, p.buffer) && pni_buffer_size(gpu, p.buffer) >= p.offset + (p.count - 1) * p.stride + 12;
+  if (there && indices)
+    there = pni_buffer_exists(gpu, mesh->indices.buffer) &&
+            pni_buffer_size(gpu, mesh->indices.buffer) >= mesh->indices.offset + indices;
+  if (there) return PN_OK;
+  return pni_fail(gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MESH_POSITIONS,
+                  "a buffer of mesh %u is gone, or holds less than the mesh was described with", mesh->id);
+}
+
 /* ---- positions --------------------------------------------------------------------------------------------------- */
 
 /* From buffer to texture without passing through here, where the layout is whole floats. */
@@ -72,17 +87,17 @@ static pn_result copy_positions(pni_gpu *gpu, const pni_mesh_data *mesh, pni_mes
   pn_result result = pni_texture_shape(gpu, &e->positions, "mesh positions", PNI_R32F, PNI_POSITION_ROW,
                                        rows_of(count, PNI_POSITION_ROW), 0, 1);
   if (result != PN_OK) return result;
+  if (floats) {
+    pni_texture_write_from(gpu, &e->positions, span.buffer, span.offset, count);
+  } else {
+    float *read = read_positions(gpu, mesh);
+    if (!read) return PN_ERROR_OUT_OF_MEMORY;
+    pni_texture_write(gpu, &e->positions, read, count);
+    pni_free(gpu, read);
+  }
   e->stride = (int)stride;
   e->current = true;
   e->pose = mesh->pose;
-  if (floats) {
-    pni_texture_write_from(gpu, &e->positions, span.buffer, span.offset, count);
-    return PN_OK;
-  }
-  float *read = read_positions(gpu, mesh);
-  if (!read) return PN_ERROR_OUT_OF_MEMORY;
-  pni_texture_write(gpu, &e->positions, read, count);
-  pni_free(gpu, read);
   return PN_OK;
 }
 
@@ -148,10 +163,15 @@ static pn_result make_edges(pni_gpu *gpu, pni_mesh_data *mesh) {
 pn_result pni_mesh_edges_get(pni_gpu *gpu, pni_mesh_data *mesh, pni_mesh_edges **out) {
   *out = NULL;
   if (!mesh->draw_count && !mesh->kept_indices) return PN_OK;
-  pn_result result = mesh->kept.state ? PN_OK : make_edges(gpu, mesh);
+  bool keep = pni_plan_pause(gpu); /* they belong to the mesh */
   pni_mesh_edges *edges = mesh->kept.state;
-  if (result != PN_OK || !edges->count) return result;
-  if (!edges->current || edges->pose != mesh->pose) result = copy_positions(gpu, mesh, edges);
-  if (result == PN_OK) *out = edges;
+  bool current = edges && (!edges->count || (edges->current && edges->pose == mesh->pose));
+  pn_result result = current ? PN_OK : check_buffers(gpu, mesh);
+  if (result == PN_OK && !edges) result = make_edges(gpu, mesh);
+  edges = mesh->kept.state;
+  bool some = result == PN_OK && edges->count;
+  if (some && (!edges->current || edges->pose != mesh->pose)) result = copy_positions(gpu, mesh, edges);
+  if (some && result == PN_OK) *out = edges;
+  pni_plan_resume(gpu, keep);
   return result;
 }

@@ -96,8 +96,7 @@ pn_result pni_casters_each_mesh(pn_casters *casters, uint32_t groups, pni_mesh_v
       others->holes++;
       continue;
     }
-    pni_matrix scene_from_vertex = pni_scene_from_vertex(casters, instance);
-    result = visit(user, mesh, &scene_from_vertex);
+    result = visit(user, mesh, &instance->scene_from_object);
   }
   return result;
 }

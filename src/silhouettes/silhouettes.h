@@ -27,9 +27,9 @@ pni_side pni_silhouette_side(const pni_edge *edge, const float *points, pni_proj
 /* A vertex as the GPU transforms it. */
 void pni_silhouette_point(const float light_from_object[16], const float position[3], float out[3]);
 
-/* Calls visit for every opaque mesh of groups: each instance with the matrix of its vertices. What has no edges to
+/* Calls visit for every opaque mesh of groups: each instance with its matrix. What has no edges to
  * find, draw callbacks and meshes with holes in their texture, is counted. */
-typedef pn_result (*pni_mesh_visitor)(void *user, pni_mesh_data *mesh, const pni_matrix *scene_from_vertex);
+typedef pn_result (*pni_mesh_visitor)(void *user, pni_mesh_data *mesh, const pni_matrix *scene_from_object);
 typedef struct {
   int callbacks, holes;
 } pni_without_edges;

@@ -18,16 +18,16 @@ static EGLDisplay surfaceless_display(void) {
   return display;
 }
 
-int headless_open(headless *out) {
-  static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                      3,
-                                      EGL_CONTEXT_MINOR_VERSION,
-                                      3,
-                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                      EGL_CONTEXT_OPENGL_DEBUG,
-                                      EGL_TRUE,
-                                      EGL_NONE};
+static int open_profile(headless *out, EGLint profile) {
+  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                               3,
+                               EGL_CONTEXT_MINOR_VERSION,
+                               3,
+                               EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                               profile,
+                               EGL_CONTEXT_OPENGL_DEBUG,
+                               EGL_TRUE,
+                               EGL_NONE};
   EGLDisplay display = surfaceless_display();
   if (display == EGL_NO_DISPLAY || !eglBindAPI(EGL_OPENGL_API)) {
     fprintf(stderr, "host client: no EGL display\n");
@@ -35,7 +35,7 @@ int headless_open(headless *out) {
   }
   EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
   if (context == EGL_NO_CONTEXT || !eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
-    fprintf(stderr, "host client: no OpenGL 3.3 core context\n");
+    fprintf(stderr, "host client: no OpenGL 3.3 context of that profile\n");
     return 0;
   }
   const char *missing = NULL;
@@ -46,6 +46,10 @@ int headless_open(headless *out) {
   *out = (headless){display, context};
   return 1;
 }
+
+int headless_open(headless *out) { return open_profile(out, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT); }
+
+int headless_open_compatible(headless *out) { return open_profile(out, EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT); }
 
 int headless_open_es(const headless *main, headless *out) {
   static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 0, EGL_NONE};

@@ -22,6 +22,13 @@ int host_open(host *self) {
   return renderer_open(&self->draw, &self->world);
 }
 
+int host_open_compatible(host *self) {
+  memset(self, 0, sizeof *self);
+  if (!headless_open_compatible(&self->window)) return 0;
+  scene_make(&self->world);
+  return renderer_open(&self->draw, &self->world);
+}
+
 int host_open_model(host *self, const mesh *model) {
   memset(self, 0, sizeof *self);
   self->world.meshes[0] = *model;

@@ -29,6 +29,7 @@ typedef struct {
 /* GL, the scene and its buffers; 0 when there is no GL here. With a model (which becomes the host's) the scene is that
  * mesh alone. */
 int host_open(host *self);
+int host_open_compatible(host *self); /* in a compatibility context */
 int host_open_model(host *self, const mesh *model);
 void host_close(host *self);
 

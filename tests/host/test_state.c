@@ -410,6 +410,15 @@ static void test_reset(void **state) {
   free(expected);
 }
 
+/* Whether the library opens debug groups here. */
+static int has_groups(void) {
+  const char *name;
+  int in_use;
+  for (int i = 0; pn_feature(h.context, i, &name, &in_use, NULL); i++)
+    if (strcmp(name, "labels") == 0) return in_use;
+  return 0;
+}
+
 /* In a bracket, and in reset mode, no state is read back. */
 static void test_reads_nothing(void **state) {
   static const char *const getters[] = {"glGetIntegerv", "glGetBooleanv",   "glGetFloatv",     "glGetDoublev",
@@ -432,7 +441,7 @@ static void test_reads_nothing(void **state) {
     if (mode == PN_STATE_RESTORE) {
       assert_true(reads > 0);
     } else {
-      assert_int_equal(reads, 0);
+      assert_int_equal(reads, has_groups() ? LIGHTS + IMAGES : 0); /* one look a call, whether their stack is full */
     }
     if (mode == PN_STATE_SCOPED) assert_int_equal(end(0), PN_OK);
     run(destruction, COUNT(destruction), 0, NULL, NULL);

@@ -155,7 +155,7 @@ static void assert_kept(const stage *s, const float positions[3 * CORNERS]) {
       assert_true(fabsf(kept[i]) <= 2 * (high - low));
     }
   }
-  pni_matrix matrix = pni_scene_from_vertex(s->casters, &s->casters->instances[0]);
+  pni_matrix matrix = pni_from_vertex(first_mesh(s), &s->casters->instances[0].scene_from_object);
   for (int i = 0; i < CORNERS; i++) {
     const double vertex[3] = {kept[3 * i], kept[3 * i + 1], kept[3 * i + 2]};
     const double position[3] = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};

@@ -134,9 +134,9 @@ static float *look(scene_kind kind, const char *technique) {
   return image;
 }
 
-/* Every bit that a layer sets stays set, so more of a layer is never lighter; and there is something between. Where the
- * part ends quads lack corners, and what is left of them stands for more than its share of the whole one's
- * rectangle. */
+/* Every bit that a layer sets stays set, so more of a layer is never lighter; and there is something between. Not so
+ * quads: where the part ends they lack corners, and what is left of them stands for more than its share of the whole
+ * one's rectangle; and a single layer bridges gaps in depth behind which several know better. */
 static void test_between(void **state) {
   (void)state;
   for (int kind = 0; kind < WIDE; kind++)
@@ -151,8 +151,7 @@ static void test_between(void **state) {
       }
       int below = 0, above = 0;
       for (int i = 0; i < VIEW * HIGH; i++) {
-        assert_true(image[0][i] >= image[1][i]);
-        assert_true(quad || image[1][i] >= image[2][i]);
+        assert_true(quad || (image[0][i] >= image[1][i] && image[1][i] >= image[2][i]));
         below += image[0][i] > image[1][i];
         above += image[1][i] > image[2][i];
       }

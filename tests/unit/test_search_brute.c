@@ -145,6 +145,98 @@ static void cover_triangle(field *f, const double *a, const double *b, const dou
   }
 }
 
+/* ---- gaps in depth: docs/space.md ---- */
+
+/* Which of a quad's corners lie on the surface of each, a bit for each corner; how many texels the farther one goes on
+ * behind the nearer; whether rounding leaves that open. */
+typedef struct {
+  int parts[4];
+  double reach;
+  bool open;
+} gaps;
+
+/* What a layer hides is in another layer of the map, in the next ones by themselves, or in none that is known. */
+enum { BEHIND_NEXT = -1, BEHIND_UNKNOWN = -2 };
+
+static double w_at(const atlas *a, int map, int layer, int x, int y) {
+  place q;
+  sample_of(a, map, layer, x, y, &q);
+  return q.w;
+}
+
+/* A step from one sample to the next, held against the slopes on both sides, where there are any. */
+static int gap_at(const atlas *a, int map, int layer, int x, int y, int dx, int dy, double turn) {
+  double w[4], low = 1e30, high = -1e30, slopes = 0;
+  for (int i = 0; i < 4; i++) w[i] = w_at(a, map, layer, x + (i - 1) * dx, y + (i - 1) * dy);
+  if (w[1] < -1e29 || w[2] < -1e29) return NO;
+  for (int i = 0; i < 3; i += 2) {
+    if (w[i] < -1e29 || w[i + 1] < -1e29) continue;
+    low = fmin(low, w[i + 1] - w[i]);
+    high = fmax(high, w[i + 1] - w[i]);
+  }
+  if (low > high) low = high = 0;
+  bool both = w[0] > -1e29 && w[3] > -1e29;
+  slopes = both ? fabs(w[1] - w[0]) + fabs(w[3] - w[2]) : 2 * fabs(low);
+  double past = fmax(low - (w[2] - w[1]), w[2] - w[1] - high) - turn - 0.25 * slopes;
+  double rounding = 1e-6 * (fabs(w[1]) + fabs(w[2])) + 2e-7;
+  return past > rounding ? YES : past < -rounding ? NO : MAYBE;
+}
+
+static double reach_behind(const atlas *a, int map, int behind, int x, int y, int dx, int dy, double far, double near,
+                           bool *open) {
+  if (behind < 0) return behind == BEHIND_NEXT ? 0 : 255;
+  double reach = 0;
+  for (int step = 1; step <= 128; step *= 2) {
+    double w = w_at(a, map, behind, x + step * dx, y + step * dy);
+    if (w > -1e29 && fabs(w - (far + near) / 2) < 1e-6) *open = true;
+    if (w < -1e29 || w >= (far + near) / 2) break;
+    reach = 2 * step - 1;
+  }
+  return reach;
+}
+
+/* Corners on the same side of every gap, found by spreading along the quad's four sides. */
+static gaps gaps_of(const atlas *a, int map, int layer, int behind, int x, int y) {
+  static const int sides[4][2] = {{0, 1}, {2, 3}, {0, 2}, {1, 3}};
+  gaps g = {{1, 2, 4, 8}, 255, false};
+  double w[4], most = -1e30, reach = 255;
+  for (int i = 0; i < 4; i++) most = fmax(most, w[i] = w_at(a, map, layer, x + (i & 1), y + (i >> 1)));
+  for (int pass = 0; pass < 2; pass++)
+    for (int i = 0; i < 4; i++) {
+      int p = sides[i][0], q = sides[i][1], dx = i < 2, dy = i >= 2, px = x + (p & 1), py = y + (p >> 1);
+      double texel = 1 / a->block->maps[map].density[dy], turn = texel * (a->sun ? 1 : most) + 6 * a->block->w_error;
+      int gap = gap_at(a, map, layer, px, py, dx, dy, turn);
+      g.open = g.open || gap == MAYBE;
+      if (gap == NO)
+        for (int k = 0, both = g.parts[p] | g.parts[q]; k < 4; k++)
+          if (both >> k & 1) g.parts[k] |= both;
+      if (gap == NO || pass) continue;
+      bool up = w[p] < w[q]; /* from the farther to the nearer */
+      double found = reach_behind(a, map, behind, up ? px : px + dx, up ? py : py + dy, up ? dx : -dx, up ? dy : -dy,
+                                  fmin(w[p], w[q]), fmax(w[p], w[q]), &g.open);
+      reach = fmin(reach, found);
+    }
+  if (g.parts[0] != 15) g.reach = reach;
+  return g;
+}
+
+/* Whether what lies beyond a gap is hidden by what goes on behind it, for lines to this receiver. */
+static int bridged(const atlas *a, const receiver *r, int map, const gaps *g, const place q[4], const bool there[4]) {
+  if (g->reach >= 255) return YES;
+  double lever = 0, near = -1e30, far = 1e30;
+  for (int i = 0; i < 4; i++) {
+    lever = fmax(lever, fabs(q[i].s - r->m.s) * a->block->maps[map].density[0]);
+    lever = fmax(lever, fabs(q[i].t - r->m.t) * a->block->maps[map].density[1]);
+    if (!there[i]) continue;
+    near = fmax(near, q[i].w - r->m.w);
+    far = fmin(far, q[i].w - r->m.w);
+  }
+  if (near <= 2 * r->w_most) return MAYBE;
+  double shift = lever * (1 - fmax(far, 0) / near), rounding = 1e-4 * (1 + lever);
+  if (far < 2 * r->w_most) rounding += lever * 2 * r->w_most / near;
+  return shift < g->reach - rounding ? YES : shift > g->reach + rounding ? NO : MAYBE;
+}
+
 /* ---- one primitive ---- */
 
 static double on_light(const receiver *r, int axis, double at, double dw) {
@@ -160,6 +252,7 @@ static double open_at(const receiver *r, double dw) {
 typedef struct {
   bool edges;
   primitive primitive;
+  bool two_sided; /* the last layer has the farthest surfaces */
 } shape;
 
 static void add_patch(const atlas *a, const receiver *r, int map, int layer, int x, int y, field *f) {
@@ -236,29 +329,63 @@ static void maybe_quad(const receiver *r, const place q[4], const int hide[4], c
   cover_box(f, &b, open_at(r, least), MAYBE);
 }
 
+/* What is left of a quad: surface by surface, and unless all lie at the same w, row by row of it. */
+static void add_parts(const receiver *r, const place q[4], const int hide[4], const double dw[4], const gaps *g,
+                      bool level, field *f) {
+  int left = 0;
+  for (int i = 0; i < 4; i++) left |= (hide[i] == YES) << i;
+  for (int first = 0; first < 4; first++) {
+    int part = left & g->parts[first] & (level ? 15 : first < 2 ? 3 : 12), kept[4];
+    if (!(left >> first & 1)) continue;
+    left &= ~part;
+    double least = 1e30;
+    for (int i = 0; i < 4; i++) {
+      kept[i] = part >> i & 1 ? YES : NO;
+      if (kept[i]) least = fmin(least, dw[i]);
+    }
+    box b = quad_box(r, q, kept, dw);
+    cover_box(f, &b, open_at(r, least), YES);
+  }
+}
+
 static void add_quad(const atlas *a, const receiver *r, int map, int layer, int x, int y, const shape *how, field *f) {
+  static const gaps none = {{15, 15, 15, 15}, 255, false};
   place q[4];
+  bool there[4], open = false, level = true;
   int hide[4], count[3] = {0};
-  double dw[4], cell = fmax(r->texel[0], r->texel[1]), least = 1e30;
+  double dw[4], cell = fmax(r->texel[0], r->texel[1]), least = 1e30, w = -1e30;
   for (int i = 0; i < 4; i++) {
-    bool there = sample_of(a, map, layer, x + (i & 1), y + (i >> 1), &q[i]);
+    there[i] = sample_of(a, map, layer, x + (i & 1), y + (i >> 1), &q[i]);
     dw[i] = q[i].w - r->m.w;
-    hide[i] = there ? hides(r, &q[i], false, 0) : NO;
+    hide[i] = there[i] ? hides(r, &q[i], false, 0) : NO;
     count[hide[i]]++;
+    level = level && (!there[i] || w < -1e29 || q[i].w == w);
+    if (there[i]) w = q[i].w;
   }
   if (count[NO] == 4 || (count[NO] && !how->edges)) return;
-  bool whole = count[YES] == 4, open = false;
-  for (int i = 0; i < 4 && count[NO]; i++) /* single corners must rise above a crease */
+  int last = a->layers - 1, behind = how->two_sided  ? (layer == last ? BEHIND_NEXT : last)
+                                     : layer == last ? BEHIND_UNKNOWN
+                                                     : BEHIND_NEXT;
+  gaps g = gaps_of(a, map, layer, behind, x, y);
+  int whole = count[NO] ? NO : bridged(a, r, map, &g, q, there), kept = bridged(a, r, map, &g, q, there);
+  if (kept == YES && !g.open) g = none;
+  if (whole == NO && !how->edges && !count[MAYBE] && !g.open) return;
+  for (int i = 0; i < 4 && whole != YES; i++) /* single corners must rise above a crease */
     hide[i] = hide[i] == NO ? NO : hides(r, &q[i], true, cell);
   for (int i = 0; i < 4; i++) open = open || hide[i] == MAYBE;
   if (hide[0] + hide[1] + hide[2] + hide[3] == NO) return;
-  if (open) {
-    maybe_quad(r, q, hide, dw, f);
+  if (open || g.open || kept == MAYBE) {
+    int any[4];
+    for (int i = 0; i < 4; i++) any[i] = there[i] && dw[i] > -1e-6 && hides(r, &q[i], false, 0) != NO ? MAYBE : NO;
+    maybe_quad(r, q, any, dw, f);
     return;
   }
-  for (int i = 0; i < 4; i++)
-    if (hide[i] == YES) least = fmin(least, dw[i]);
-  if (!whole || how->primitive == QUAD) {
+  if (whole == NO) {
+    add_parts(r, q, hide, dw, &g, level, f);
+    return;
+  }
+  for (int i = 0; i < 4; i++) least = fmin(least, dw[i]);
+  if (how->primitive == QUAD) {
     box b = quad_box(r, q, hide, dw);
     cover_box(f, &b, open_at(r, least), YES);
     return;
@@ -393,7 +520,7 @@ static void check(const char *primitive_name, primitive p, bool edges, const cha
                   int rounds) {
   char spec[128];
   tally t = {0};
-  shape how = {edges, p};
+  shape how = {edges, p, strcmp(maps, "two-sided") == 0};
   snprintf(spec, sizeof spec, "bitmask:merge=0,hierarchy=none,primitive=%s,edges=%s,samples=%s,maps=%s", primitive_name,
            edges ? "on" : "off", samples, maps);
   stage s;

@@ -47,15 +47,18 @@ static void light_point(const pni_emission *emission, int i, int count, double o
 /* Maps are drawn when they are read, one batch after the other into the same images. Where the host's callbacks draw
  * casters, which is for pn_maps_update alone, all batches are drawn then and kept. */
 typedef struct {
-  pni_maps *batches;
-  int count;
+  pni_maps **batches;
+  int count, capacity;
   pni_buffer block; /* of the batch that is read */
   bool drawn;       /* in the last update: one for every BATCH samples */
 } light_state;
 
 static void release_light(pni_gpu *gpu, void *data, bool abandon) {
   light_state *state = data;
-  for (int i = 0; i < state->count; i++) pni_maps_free(gpu, &state->batches[i], abandon);
+  for (int i = 0; i < state->count; i++) {
+    pni_maps_free(gpu, state->batches[i], abandon);
+    pni_free(gpu, state->batches[i]);
+  }
   pni_free(gpu, state->batches);
   pni_buffer_free(gpu, &state->block, abandon);
   *state = (light_state){0};
@@ -72,26 +75,40 @@ static void release_pair(pni_gpu *gpu, void *data, bool abandon) {
 
 static int batch_count(const pni_job *job) { return ((int)job->values[SAMPLES] + BATCH - 1) / BATCH; }
 
-/* Room for so many batches; what more there is goes. */
+/* Each lies in memory of its own, so that the others stay where they are. */
+static pn_result add_room(const pni_job *job, int count) {
+  light_state *state = job->light_state;
+  if (count > state->capacity) {
+    pni_maps **grown = pni_reallocate(job->gpu, state->batches, (size_t)count * sizeof *grown);
+    if (!grown) return PN_ERROR_OUT_OF_MEMORY;
+    state->batches = grown;
+    state->capacity = count;
+  }
+  for (; state->count < count; state->count++) {
+    state->batches[state->count] = pni_allocate_zero(job->gpu, sizeof **state->batches);
+    if (!state->batches[state->count]) return PN_ERROR_OUT_OF_MEMORY;
+  }
+  return PN_OK;
+}
+
+/* Room for so many batches; what more there is goes, unless this is only planned. */
 static pn_result shape_batches(const pni_job *job, int count) {
   light_state *state = job->light_state;
   pni_gpu *gpu = job->gpu;
-  if (state->count != count) {
-    release_light(gpu, state, false);
-    state->batches = pni_allocate_zero(gpu, (size_t)count * sizeof *state->batches);
-    if (!state->batches) return PN_ERROR_OUT_OF_MEMORY;
-    state->count = count;
-  }
   static const pni_maps_want one = {.near_layers = 1};
-  pn_result result = PN_OK;
+  for (; state->count > count && !gpu->plan.on; state->count--) {
+    pni_maps_free(gpu, state->batches[state->count - 1], false);
+    pni_free(gpu, state->batches[state->count - 1]);
+  }
+  pn_result result = add_room(job, count);
   for (int i = 0; i < count && result == PN_OK; i++)
-    result = pni_maps_shape(gpu, &state->batches[i], &one, BATCH, job->desc->map_width, job->desc->map_height);
+    result = pni_maps_shape(gpu, state->batches[i], &one, BATCH, job->desc->map_width, job->desc->map_height);
   return result;
 }
 
 /* ---- maps -------------------------------------------------------------------------------------------------------- */
 
-static void fit_point(const pni_job *job, const double shear[2], pni_fit_result *fit) {
+static pni_fit_request fit_point(const pni_job *job, const double shear[2], pni_fit_result *fit) {
   pni_fit_request request = {.frame = job->frame,
                              .emission = job->emission,
                              .shear = {shear[0], shear[1]},
@@ -102,15 +119,16 @@ static void fit_point(const pni_job *job, const double shear[2], pni_fit_result 
                              .given = job->desc->fit == PN_FIT_GIVEN ? job->desc->fit_bounds : NULL,
                              .visible = job->visible};
   pni_fit_maps(job->casters, job->groups, &request, fit);
-  if (!fit->empty) return;
+  if (!fit->empty) return request;
   request.visible = NULL; /* from this point no caster shadows anything seen: any map will do */
   pni_fit_maps(job->casters, job->groups, &request, fit);
+  return request;
 }
 
 /* A map from one point is never split: its border tiles would cost as much as more points. */
 static pn_result draw_map(const pni_job *job, pni_maps *batch, const double shear[2]) {
   pni_fit_result fit;
-  fit_point(job, shear, &fit);
+  pni_fit_request request = fit_point(job, shear, &fit);
   pni_map_draw draw = {.frame = job->frame,
                        .casters = job->casters,
                        .groups = job->groups,
@@ -118,6 +136,7 @@ static pn_result draw_map(const pni_job *job, pni_maps *batch, const double shea
                        .w_near = fit.w_near,
                        .w_far = fit.w_far,
                        .shear = {shear[0], shear[1]},
+                       .range = pni_fit_range(&request),
                        .without_host = job->receiver != NULL};
   if (fit.tiles == 1)
     for (int i = 0; i < 4; i++) draw.bounds[i] = fit.tile[0][i];
@@ -128,7 +147,8 @@ static pn_result draw_batch(const pni_job *job, int index, pni_maps *batch) {
   int samples = (int)job->values[SAMPLES];
   pn_result result = PN_OK;
   pni_maps_describe(job->gpu, batch, job->frame, job->emission);
-  for (int i = BATCH * index; i < BATCH * (index + 1) && i < samples && result == PN_OK; i++) {
+  int end = BATCH * index + (job->gpu->plan.on ? 1 : BATCH); /* all are drawn alike */
+  for (int i = BATCH * index; i < end && i < samples && result == PN_OK; i++) {
     double point[2];
     light_point(job->emission, i, samples, point);
     result = draw_map(job, batch, point);
@@ -139,11 +159,11 @@ static pn_result draw_batch(const pni_job *job, int index, pni_maps *batch) {
 static pn_result update(const pni_job *job) {
   light_state *state = job->light_state;
   int count = batch_count(job);
-  state->drawn = false;
-  if (!pni_casters_call_host(job->casters, job->groups)) return PN_OK;
-  pn_result result = shape_batches(job, count);
-  for (int i = 0; i < count && result == PN_OK; i++) result = draw_batch(job, i, &state->batches[i]);
-  state->drawn = result == PN_OK;
+  bool draws = pni_casters_call_host(job->casters, job->groups);
+  pn_result result = draws ? shape_batches(job, count) : PN_OK;
+  if (result == PN_OK && draws && job->gpu->plan.on) return draw_batch(job, 0, state->batches[0]);
+  for (int i = 0; i < count && draws && result == PN_OK; i++) result = draw_batch(job, i, state->batches[i]);
+  if (!job->gpu->plan.on) state->drawn = draws && result == PN_OK;
   return result;
 }
 
@@ -164,7 +184,9 @@ static pn_result add_batch(const pni_job *job, const pni_maps *batch, const pni_
   pni_gpu *gpu = job->gpu;
   char defines[PNI_RECEIVER_DEFINES];
   pni_receiver_defines(job->receiver, defines);
-  pn_result result = pni_buffer_fill(gpu, &state->block, "light", PNI_BUFFER_BLOCK, &batch->block, sizeof batch->block);
+  pn_result result = pni_buffer_reserve(gpu, &state->block, "light", PNI_BUFFER_BLOCK, sizeof batch->block);
+  if (result == PN_OK && !gpu->plan.on)
+    result = pni_buffer_fill(gpu, &state->block, "light", PNI_BUFFER_BLOCK, &batch->block, sizeof batch->block);
   if (result != PN_OK) return result;
   pni_bind_block(gpu, &state->block);
   pni_pass pass = {.name = "average",
@@ -208,11 +230,11 @@ static pn_result draw(const pni_job *job) {
   if (!state->drawn && !job->casters)
     return pni_fail(job->gpu, PN_ERROR_NOT_READY, PN_MESSAGE_MAPS_STALE,
                     "the casters of the last pn_maps_update are gone");
-  int count = batch_count(job);
+  int count = job->gpu->plan.on ? 1 : batch_count(job);
   pn_result result = shape(job);
   if (result == PN_OK) result = clear_counts(job, &pair->counts[0]);
   for (int i = 0; i < count && result == PN_OK; i++) {
-    pni_maps *batch = &state->batches[state->drawn ? i : 0];
+    pni_maps *batch = state->batches[state->drawn ? i : 0];
     if (!state->drawn) result = draw_batch(job, i, batch);
     if (result == PN_OK) result = add_batch(job, batch, &pair->counts[i & 1], &pair->counts[!(i & 1)]);
   }

@@ -70,7 +70,8 @@ typedef struct {
   const pni_job *job;
   smoothies *state;
   pni_matrix light_from_scene;
-  float cut; /* nearer than the nearest caster's plane nothing is drawn */
+  double farthest; /* beyond it casters cast nothing */
+  float cut;       /* nearer than the nearest caster's plane nothing is drawn */
 } drawing;
 
 static size_t summed(size_t count) { return (count + SUMMED - 1) / SUMMED; }
@@ -180,14 +181,16 @@ static pn_result draw_tile(const drawing *d, const pni_mesh_edges *e, int tile) 
   return PN_OK;
 }
 
-static pn_result draw_mesh(void *user, pni_mesh_data *mesh, const pni_matrix *scene_from_vertex) {
+static pn_result draw_mesh(void *user, pni_mesh_data *mesh, const pni_matrix *scene_from_object) {
   const drawing *d = user;
   const pni_job *job = d->job;
   pni_mesh_edges *edges;
+  pni_matrix light_from_object = pni_matrix_multiply(&d->light_from_scene, scene_from_object);
+  if (pni_mesh_beyond(mesh, &light_from_object, d->farthest)) return PN_OK;
   pn_result result = pni_mesh_edges_get(job->gpu, mesh, &edges);
   if (result != PN_OK || !edges) return result;
-  pni_matrix light_from_object = pni_matrix_multiply(&d->light_from_scene, scene_from_vertex);
-  result = pni_silhouettes_draw(job->gpu, edges, &light_from_object, job->frame->projection, d->cut);
+  pni_matrix light_from_vertex = pni_from_vertex(mesh, &light_from_object);
+  result = pni_silhouettes_draw(job->gpu, edges, &light_from_vertex, job->frame->projection, d->cut);
   if (result == PN_OK) result = shape_tables(job->gpu, d->state, edges->count);
   if (result == PN_OK) result = keep_seen(d, edges);
   if (result == PN_OK) result = add_sums(d, edges);
@@ -220,10 +223,19 @@ static void tell(pni_gpu *gpu, smoothies *s, const pni_without_edges *others) {
            others->callbacks, others->holes);
 }
 
+/* The light's range, or where the map's depth ends. */
+static double farthest_caster(const pni_job *job) {
+  double w_far = job->maps->fit.w_far, range = job->desc->range;
+  if (job->frame->projection == PNI_PARALLEL) return -w_far;
+  double end = w_far > 0 ? 1 / w_far : INFINITY;
+  return range > 0 && range < end ? range : end;
+}
+
 static pn_result update(const pni_job *job) {
   drawing d = {.job = job,
                .state = job->light_state,
                .light_from_scene = pni_light_from_scene(job->frame),
+               .farthest = farthest_caster(job),
                .cut = job->frame->projection == PNI_PARALLEL ? 0 : (float)(1 / job->maps->fit.w_near)};
   pni_without_edges others = {0};
   pn_result result = clear(job, &d.state->image);

@@ -12,26 +12,27 @@ enum { LEVELS_MAX = 16 };
 typedef struct {
   int width, height, levels;
   float *level[LEVELS_MAX];
-  float *memory;
 } pyramid;
 
 static int shifted(int size, int level) { return size >> level > 1 ? size >> level : 1; }
 
-static pn_result read_pyramid(pni_gpu *gpu, const pni_texture *texture, int layer, pyramid *out) {
+/* Numbers that it has. */
+static size_t pyramid_floats(const pni_texture *texture) {
   size_t texels = 0;
-  *out = (pyramid){texture->width, texture->height, texture->levels, {0}, NULL};
   for (int i = 0; i < texture->levels; i++)
     texels += (size_t)shifted(texture->width, i) * (size_t)shifted(texture->height, i);
-  out->memory = pni_reallocate(gpu, NULL, 2 * texels * sizeof(float));
-  if (!out->memory) return PN_ERROR_OUT_OF_MEMORY;
-  float *next = out->memory;
+  return 2 * texels;
+}
+
+static void read_pyramid(pni_gpu *gpu, const pni_texture *texture, int layer, float *memory, pyramid *out) {
+  *out = (pyramid){texture->width, texture->height, texture->levels, {0}};
+  float *next = memory;
   for (int i = 0; i < texture->levels; i++) {
     int width = shifted(texture->width, i), height = shifted(texture->height, i);
     pni_texture_read(gpu, texture, i, layer, width, height, 2, next);
     out->level[i] = next;
     next += 2 * (size_t)width * (size_t)height;
   }
-  return PN_OK;
 }
 
 static const float *pyramid_at(const pyramid *p, int x, int y, int level) {
@@ -47,7 +48,7 @@ typedef struct {
   float seen_bounds[4], share;
   int seen_size[2];
   float *entries;
-  int count, capacity;
+  int count; /* in all; those from list->first on are kept, as many as a list has */
 } walk;
 
 static float clampf(float x, float low, float high) { return fminf(fmaxf(x, low), high); }
@@ -121,23 +122,17 @@ static void seen_between(const walk *w, const float low[2], const float high[2],
   }
 }
 
-static pn_result add_entry(walk *w, const float entry[8]) {
-  if (w->count == w->capacity) {
-    int capacity = w->capacity ? 2 * w->capacity : 4096;
-    float *grown = pni_reallocate(w->list->job->gpu, w->entries, (size_t)capacity * 8 * sizeof(float));
-    if (!grown) return PN_ERROR_OUT_OF_MEMORY;
-    w->entries = grown;
-    w->capacity = capacity;
-  }
-  memcpy(w->entries + 8 * (size_t)w->count++, entry, 8 * sizeof(float));
-  return PN_OK;
+static void add_entry(walk *w, const float entry[8]) {
+  int at = w->count++ - w->list->first;
+  if (at >= 0 && at < pni_ssm_list_size(w->list->job->maps))
+    memcpy(w->entries + 8 * (size_t)at, entry, 8 * sizeof(float));
 }
 
 /* Adds the node where it is a micropatch that some receiver needs: pn_node. */
-static pn_result add_node(walk *w, int x, int y, int level) {
+static void add_node(walk *w, int x, int y, int level) {
   const float *range = pyramid_at(&w->occluders, x, y, level), *extent = w->block->extent;
   float middle = 0.5f * (range[0] + range[1]), most = node_limit(w, x, y, level);
-  if (pni_is_nothing(most)) return PN_OK;
+  if (pni_is_nothing(most)) return;
   float above = node_limit(w, x >> 1, y >> 1, level + 1), size = (float)(1 << level), low[2], high[2];
   map_st(w, (float)x * size, (float)y * size, low);
   map_st(w, ((float)x + 1) * size, ((float)y + 1) * size, high);
@@ -150,60 +145,76 @@ static pn_result add_node(walk *w, int x, int y, int level) {
       to[c] = high[c] + reach;
     }
     seen_between(w, from, to, seen);
-    if (!(seen[1] <= most && seen[0] > above)) return PN_OK;
+    if (!(seen[1] <= most && seen[0] > above)) return;
     seen[1] = fmaxf(seen[1], above);
   }
   const float entry[8] = {(float)x * size, (float)y * size, size, middle, most, above, seen[1], 1};
-  return add_entry(w, entry);
+  add_entry(w, entry);
 }
 
-static pn_result visit(walk *w, int x, int y, int level) {
+static void visit(walk *w, int x, int y, int level) {
   const pyramid *p = &w->occluders;
-  if (x >= shifted(p->width, level) || y >= shifted(p->height, level)) return PN_OK;
-  if (pni_is_nothing(pyramid_at(p, x, y, level)[0])) return PN_OK; /* empty all the way down */
-  pn_result result = add_node(w, x, y, level);
-  for (int i = 0; i < 4 && level > 0 && result == PN_OK; i++)
-    result = visit(w, 2 * x + (i & 1), 2 * y + (i >> 1), level - 1);
-  return result;
+  if (x >= shifted(p->width, level) || y >= shifted(p->height, level)) return;
+  if (pni_is_nothing(pyramid_at(p, x, y, level)[0])) return; /* empty all the way down */
+  add_node(w, x, y, level);
+  for (int i = 0; i < 4 && level > 0; i++) visit(w, 2 * x + (i & 1), 2 * y + (i >> 1), level - 1);
 }
 
-pn_result pni_ssm_cpu_list(const pni_ssm_list *list, float **entries, int *count) {
+/* ---- the list ---------------------------------------------------------------------------------------------------- */
+
+/* What the walk works in: both pyramids, and a list. */
+static size_t scratch_floats(const pni_ssm_list *list) {
+  return pyramid_floats(&list->job->maps->range) + pyramid_floats(&list->state->seen.range) +
+         8 * (size_t)pni_ssm_list_size(list->job->maps);
+}
+
+static pn_result take_scratch(const pni_ssm_list *list) {
+  pni_ssm_state *state = list->state;
+  size_t wanted = scratch_floats(list);
+  if (state->scratch_floats >= wanted) return PN_OK;
+  float *grown = pni_reallocate(list->job->gpu, state->scratch, wanted * sizeof *grown);
+  if (!grown) return PN_ERROR_OUT_OF_MEMORY;
+  state->scratch = grown;
+  state->scratch_floats = wanted;
+  return PN_OK;
+}
+
+/* Half of each entry goes to either texture. */
+static void upload(const pni_ssm_list *list, const float *entries, int count) {
+  const pni_texture *to[2] = {&list->state->list, &list->state->limits};
+  int width = to[0]->width;
+  float row[4 * PNI_SSM_LIST_WIDTH];
+  for (int half = 0; half < 2; half++)
+    for (int first = 0; first < count; first += width) {
+      int some = count - first < width ? count - first : width;
+      for (int i = 0; i < some; i++)
+        memcpy(row + 4 * i, entries + 8 * (size_t)(first + i) + 4 * half, 4 * sizeof(float));
+      pni_texture_write_row(list->job->gpu, to[half], first / width, row, some);
+    }
+}
+
+pn_result pni_ssm_cpu_list(const pni_ssm_list *list, int *total) {
   const pni_job *job = list->job;
   const pni_seen *seen = &list->state->seen;
   const pni_seen_want *want = &seen->want;
-  int layer = list->map * pni_want_layers(&job->maps->want) + list->layer;
+  int layer = list->map * pni_want_layers(&job->maps->want) + list->layer, size = pni_ssm_list_size(job->maps);
   const double *b = want->bounds;
+  *total = 1;
+  pn_result result = take_scratch(list);
+  if (result != PN_OK || job->gpu->plan.on) return result;
+  float *receivers = list->state->scratch + pyramid_floats(&job->maps->range);
   walk w = {.list = list,
             .block = &job->maps->block,
             .share = (float)list->share,
             .seen_bounds = {(float)b[0], (float)b[1], (float)(want->width / (b[2] - b[0])),
                             (float)(want->height / (b[3] - b[1]))},
-            .seen_size = {want->width, want->height}};
-  pn_result result = read_pyramid(job->gpu, &job->maps->range, layer, &w.occluders);
-  if (result == PN_OK) result = read_pyramid(job->gpu, &seen->range, list->seen_layer, &w.receivers);
-  if (result == PN_OK) result = visit(&w, 0, 0, w.occluders.levels - 1);
-  pni_free(job->gpu, w.occluders.memory);
-  pni_free(job->gpu, w.receivers.memory);
-  if (result != PN_OK) pni_free(job->gpu, w.entries);
-  *entries = result == PN_OK ? w.entries : NULL;
-  *count = result == PN_OK ? w.count : 0;
-  return result;
-}
-
-pn_result pni_ssm_cpu_upload(const pni_ssm_list *list, const float *entries, int count) {
-  const pni_job *job = list->job;
-  pni_gpu *gpu = job->gpu;
-  const pni_texture *to[2] = {&list->state->list, &list->state->limits};
-  int left = count - list->first, most = pni_ssm_list_size(job->maps), width = to[0]->width;
-  int rows = ((left < most ? left : most) + width - 1) / width;
-  float *part = pni_allocate_zero(gpu, (size_t)rows * (size_t)width * 4 * sizeof(float));
-  if (!part) return PN_ERROR_OUT_OF_MEMORY;
-  for (int half = 0; half < 2; half++) {
-    memset(part, 0, (size_t)rows * (size_t)width * 4 * sizeof(float));
-    for (int i = 0; i < left && i < most; i++)
-      memcpy(part + 4 * (size_t)i, entries + 8 * (size_t)(list->first + i) + 4 * half, 4 * sizeof(float));
-    pni_texture_write(gpu, to[half], part, (size_t)rows * (size_t)width);
-  }
-  pni_free(gpu, part);
+            .seen_size = {want->width, want->height},
+            .entries = receivers + pyramid_floats(&seen->range)};
+  read_pyramid(job->gpu, &job->maps->range, layer, list->state->scratch, &w.occluders);
+  read_pyramid(job->gpu, &seen->range, list->seen_layer, receivers, &w.receivers);
+  visit(&w, 0, 0, w.occluders.levels - 1);
+  *total = w.count;
+  int left = w.count - list->first;
+  upload(list, w.entries, left < size ? left : size);
   return PN_OK;
 }

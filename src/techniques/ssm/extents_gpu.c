@@ -121,7 +121,7 @@ pn_result pni_ssm_gpu_list(const pni_ssm_list *list) {
 
 int pni_ssm_gpu_total(const pni_ssm_list *list) {
   const pni_texture *counts = &list->state->counts;
-  uint32_t top[4] = {0};
+  uint32_t top[4] = {1}; /* while the call is planned nothing is read */
   pni_texture_read(list->job->gpu, counts, counts->levels - 1, 0, 1, 1, 4, top);
   return (int)(top[0] & 0x7fffffffu); /* the highest bit: whether the top node is one itself */
 }

@@ -104,16 +104,14 @@ static pn_result scatter_gpu(pni_ssm_scattering *s, pni_ssm_list *list) {
 }
 
 static pn_result scatter_cpu(pni_ssm_scattering *s, pni_ssm_list *list) {
-  float *entries;
-  int total;
-  pn_result result = pni_ssm_cpu_list(list, &entries, &total);
+  int total = 1;
+  pn_result result = PN_OK;
   for (; list->first < total && result == PN_OK; list->first += pni_ssm_list_size(s->job->maps)) {
-    result = pni_ssm_cpu_upload(list, entries, total);
+    result = pni_ssm_cpu_list(list, &total);
     pni_ssm_mark(s, "extents");
-    if (result == PN_OK) result = draw_list(s, list, total);
+    if (result == PN_OK && list->first < total) result = draw_list(s, list, total);
     pni_ssm_mark(s, "accumulate");
   }
-  pni_free(s->job->gpu, entries);
   return result;
 }
 

@@ -61,6 +61,12 @@ static void want(const double *values, pni_maps_want *out) {
 
 /* ---- what it keeps for a pair ------------------------------------------------------------------------------------ */
 
+static void free_scratch(pni_gpu *gpu, pni_ssm_state *s) {
+  pni_free(gpu, s->scratch);
+  s->scratch = NULL;
+  s->scratch_floats = 0;
+}
+
 static void release(pni_gpu *gpu, void *data, bool abandon) {
   pni_ssm_state *s = data;
   pni_texture *all[] = {&s->counts,  &s->list, &s->limits,  &s->totals, &s->batch, &s->sums[0],
@@ -68,6 +74,7 @@ static void release(pni_gpu *gpu, void *data, bool abandon) {
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) pni_texture_free(gpu, all[i], abandon);
   pni_seen_free(gpu, &s->seen, abandon);
   pni_buffer_free(gpu, &s->arguments, abandon);
+  free_scratch(gpu, s);
 }
 
 static const pni_texture *image(const void *data, int index, const char **name) {
@@ -104,20 +111,18 @@ static bool place_axis(const pni_job *job, const pni_region *seen, int i, double
 }
 
 static pn_result find_receivers(const pni_job *job, pni_region *seen) {
-  if (job->visible) {
-    *seen = *job->visible;
-    return PN_OK;
-  }
   *seen = pni_region_empty();
-  return pni_receiver_bounds(job->receiver, job->frame, seen);
+  if (job->visible) *seen = *job->visible;
+  return job->visible ? PN_OK : pni_receiver_bounds(job->receiver, job->frame, seen);
 }
 
+/* While the call is planned nothing is known of receivers: it lies anywhere. */
 static bool place(const pni_job *job, const pni_region *seen, pni_seen_want *out) {
   int size = (int)job->values[SIZE];
   *out = (pni_seen_want){.width = size ? size : job->desc->map_width,
                          .height = size ? size : job->desc->map_height,
                          .layers = (int)job->values[LAYERS]};
-  for (int i = 0; i < 2; i++)
+  for (int i = 0; i < 2 && !job->gpu->plan.on; i++)
     if (!place_axis(job, seen, i, &out->bounds[i], &out->bounds[i + 2])) return false;
   /* Receivers in a plane that faces the light have no extent in w; the depth test needs one that floats resolve. */
   double span = fmax(seen->most[2] - seen->least[2], 1e-3 * fabs(seen->most[2]) + 1e-12);
@@ -250,14 +255,14 @@ static pn_result draw_shadow(const pni_job *job, const pni_region *seen, const p
   int accumulate = accumulation(job);
   pni_ssm_scattering s = start(job, PNI_SSM_SUM_SHADOW, &state->soft);
   s.by_batches = accumulate == ACCUMULATE_BATCHED;
-  if (job->values[ACCUMULATE] == ACCUMULATE_FP16) warn_of_loss(job, seen);
+  if (job->values[ACCUMULATE] == ACCUMULATE_FP16 && !job->gpu->plan.on) warn_of_loss(job, seen);
   pn_result result = pni_seen_draw(job, where, &state->seen);
   if (result == PN_OK) result = shape(job, accumulate);
   pni_ssm_mark(&s, "receiver_map");
   if (result == PN_OK) result = pni_ssm_scatter(&s);
   if (result == PN_OK) result = look_up(&s, job->target);
   pni_ssm_mark(&s, "visibility");
-  if (result == PN_OK) hand_out(state, job);
+  if (result == PN_OK && !job->gpu->plan.on) hand_out(state, job);
   return result;
 }
 
@@ -265,9 +270,9 @@ static pn_result draw(const pni_job *job) {
   pni_ssm_state *state = job->pair_state;
   pni_region seen;
   pni_seen_want where;
-  state->shown = (pn_soft_shadow_map){0};
   pn_result result = find_receivers(job, &seen);
   if (result != PN_OK) return result;
+  if (!job->gpu->plan.on) state->shown = (pn_soft_shadow_map){0};
   if (!place(job, &seen, &where)) {
     pni_pass pass = pni_job_pass(job, NULL, (pni_program_key){0});
     return pni_fill(job->gpu, "nothing to shadow", &pass, 1);
@@ -276,6 +281,7 @@ static pn_result draw(const pni_job *job) {
   if (result == PN_OK && job->gpu->debug & PN_DEBUG_SEARCH) result = draw_counts(job);
   bool bound = job->gpu->debug & PN_DEBUG_BOUND && job->values[MERGE] == 0; /* Eq. 3 speaks of single texels */
   if (result == PN_OK && bound) result = draw_bound(job);
+  if (!job->gpu->plan.on) free_scratch(job->gpu, state);
   return result;
 }
 

@@ -16,8 +16,10 @@ typedef struct {
   pni_texture soft;           /* the soft shadow map: sides, and in each a layer for each of the receivers */
   pni_texture covered;        /* how often each texel was come by, when debugging */
   pni_texture bounds, bound;  /* of the error, when debugging: the map, and as the camera sees it */
-  pn_soft_shadow_map shown;   /* of the last draw; no texture: none */
-  bool warned;                /* the last draw had something to warn of */
+  float *scratch;             /* for lists made on the CPU, during a draw */
+  size_t scratch_floats;
+  pn_soft_shadow_map shown; /* of the last draw; no texture: none */
+  bool warned;              /* the last draw had something to warn of */
 } pni_ssm_state;
 
 /* What the GPU counts: vertices of a list's micropatches, and of the rows of its texture. */
@@ -47,11 +49,9 @@ pn_result pni_ssm_gpu_list(const pni_ssm_list *list);
 int pni_ssm_gpu_total(const pni_ssm_list *list);
 pn_result pni_ssm_gpu_shape(const pni_job *job);
 
-/* The same list, made on the CPU from the maps read back. entries: 8 floats each, as list.frag.glsl lays them out;
- * pni_free frees them. (extents_cpu.c) */
-pn_result pni_ssm_cpu_list(const pni_ssm_list *list, float **entries, int *count);
-/* Puts entries from list->first on where the GPU's list lies. */
-pn_result pni_ssm_cpu_upload(const pni_ssm_list *list, const float *entries, int count);
+/* The same list, made on the CPU from the maps read back, and put where the GPU's lies. total: entries in all, 1 while
+ * the call is planned. (extents_cpu.c) */
+pn_result pni_ssm_cpu_list(const pni_ssm_list *list, int *total);
 
 /* What is summed up: the shadow, the bound of its error, or how many micropatches there are. */
 typedef enum { PNI_SSM_SUM_SHADOW, PNI_SSM_SUM_BOUND, PNI_SSM_SUM_COUNT } pni_ssm_sum_kind;
