@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/message.h"
+#include "base/utf8.h"
 #include "files/image.h"
 #include "scene/import_process.h"
 #include "scene/import_records.h"
@@ -125,6 +126,7 @@ static struct scene *scene_named_after(const char *path) {
   if (!scene) return NULL;
   char *dot = strrchr(scene->name, '.');
   if (dot && dot != scene->name) *dot = 0;
+  utf8_mend(scene->name);
   return scene;
 }
 
