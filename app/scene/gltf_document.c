@@ -115,8 +115,13 @@ int gltf_open(struct gltf *g, struct importer *importer) {
   g->root = cJSON_ParseWithLengthOpts((const char *)json.bytes, json.size, &end, 0);
   if (!g->root && (binary || (json.size && json.bytes[0] == '{')))
     refuse(importer, "is damaged: its JSON ends or is wrong at byte %zu", end ? (size_t)(end - (char *)json.bytes) : 0);
+  /* Assimp would go on to look for words of other formats, and find them in noise. */
+  if (!cJSON_IsObject(g->root))
+    refuse(importer, "cannot be imported: it is damaged, or not a %s file",
+           binary ? ".glb" : strrchr(importer->path, '.'));
   const char *version = gltf_string(gltf_member(g->root, "asset"), "version");
-  if (!version || strncmp(version, "2.", 2) != 0) return 0;
+  if (!version || strncmp(version, "1.", 2) == 0) return 0;
+  if (strncmp(version, "2.", 2) != 0) refuse(importer, "is glTF %.20s, of which only 1 and 2 are read", version);
   list_items(g);
   g->buffers = import_memory(g->lists[GLTF_BUFFERS].count, sizeof *g->buffers);
   g->images = import_memory(g->lists[GLTF_IMAGES].count, sizeof *g->images);

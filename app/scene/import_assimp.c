@@ -22,6 +22,7 @@ static const struct aiScene *read_model(struct importer *importer) {
                              aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
                                  aiComponent_ANIMATIONS | aiComponent_LIGHTS | aiComponent_CAMERAS);
   aiSetImportPropertyInteger(settings, AI_CONFIG_FAVOUR_SPEED, 1);
+  aiSetImportPropertyInteger(settings, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1); /* triangles that no file has */
   unsigned steps =
       aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent | aiProcess_TransformUVCoords;
   struct aiFileIO files = import_files(importer);

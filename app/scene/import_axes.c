@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* memmem */
 #include "scene/import_axes.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -32,6 +33,18 @@ static int file_says(const struct importer *importer, const char *word) {
   return found;
 }
 
+/* Assimp makes metres of Collada's units; a scene is in the file's. */
+static void undo_unit(struct importer *importer) {
+  size_t size = 0;
+  char *bytes = read_file(importer, importer->path, &size), *end = NULL;
+  const char *unit = bytes ? strstr(bytes, "<unit") : NULL, *close = unit ? strchr(unit, '>') : NULL;
+  const char *meter = close ? memmem(unit, (size_t)(close - unit), "meter=", 6) : NULL;
+  double metres = meter ? strtod(meter + 7, &end) : 0;
+  if (metres > 0 && end > meter + 7 && isfinite(1 / metres))
+    for (int i = 0; i < 9; i++) importer->turn[i] /= metres;
+  free(bytes);
+}
+
 static int has_ending(const char *path, const char *ending) {
   size_t length = strlen(path), wanted = strlen(ending);
   return length >= wanted && strcasecmp(path + length - wanted, ending) == 0;
@@ -59,5 +72,6 @@ void choose_axes(struct importer *importer, const struct aiScene *model, int up_
   /* Assimp has already turned Collada's. */
   int collada = !fbx && has_ending(importer->path, ".dae") && file_says(importer, "<up_axis>");
   if (collada) turn_up(importer, 0);
+  if (has_ending(importer->path, ".dae")) undo_unit(importer);
   if ((fbx || collada) && up_is_z) send_warning(importer, "says itself which axis is up; --up z is left out");
 }

@@ -20,7 +20,7 @@ void *read_beside(const struct importer *importer, const char *name, size_t *siz
 /* "%20" becomes a space, and "\" a slash. In place. */
 void decode_uri(char *text);
 
-/* How Assimp reads files: the same rules; a byte-order mark is passed over, and a text that is an STL in capitals is
+/* How Assimp reads files: the same rules. A byte-order mark is passed over, and a text that is an STL in capitals is
  * given in small letters, which is how Assimp wants it. */
 struct aiFileIO import_files(struct importer *importer);
 

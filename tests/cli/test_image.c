@@ -142,13 +142,10 @@ static void test_names(void **state) {
   free(name);
 }
 
-
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_exr),
-      cmocka_unit_test(test_exr_of_equal_size),
-      cmocka_unit_test(test_png),
-      cmocka_unit_test(test_srgb),
+      cmocka_unit_test(test_exr),   cmocka_unit_test(test_exr_of_equal_size),
+      cmocka_unit_test(test_png),   cmocka_unit_test(test_srgb),
       cmocka_unit_test(test_names),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
