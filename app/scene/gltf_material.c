@@ -90,7 +90,7 @@ struct material_alpha gltf_alpha(struct gltf *g, int index) {
   out.uv_channel = gltf_index(info, "texCoord") > 0 ? gltf_index(info, "texCoord") : 0;
   find_transform(info, &out);
   int visible = source.factor >= source.cutoff;
-  g->importer->blended += blend && visible && (info || source.factor < 1);
+  out.blended = blend && visible && (info || source.factor < 1);
   int textured = info && visible && find_picture(g, info, &source);
   const char *name = gltf_string(material, "name");
   char number[16];

@@ -32,14 +32,17 @@ static void describe_dropped(const struct importer *importer, char *text, size_t
 
 /* Everything about materials that shadows cannot show, in one line. */
 static void warn_about_opacity(const struct importer *importer) {
-  char transparent[200] = "", others[32] = "";
-  int many = importer->transparent_count > 1;
-  if (importer->transparent_count > 1) snprintf(others, sizeof others, " and %d more", importer->transparent_count - 1);
-  if (importer->transparent_count)
-    snprintf(transparent, sizeof transparent, "material '%s'%s %s transparent: %s no shadow and %s not drawn",
-             importer->transparent, others, many ? "are" : "is", many ? "cast" : "casts", many ? "are" : "is");
-  if (importer->transparent_count || importer->blended)
-    send_warning(importer, "%s%s%s", transparent, importer->transparent_count && importer->blended ? "; " : "",
+  char transparent[160] = "";
+  int count = importer->transparent_count;
+  if (count == 1)
+    snprintf(transparent, sizeof transparent, "material '%s' is transparent: its mesh casts nothing and is not drawn",
+             importer->transparent);
+  if (count > 1)
+    snprintf(transparent, sizeof transparent,
+             "material '%s' and others are transparent: %d meshes cast nothing and are not drawn",
+             importer->transparent, count);
+  if (count || importer->blended)
+    send_warning(importer, "%s%s%s", transparent, count && importer->blended ? "; " : "",
                  importer->blended ? "opacity between one half and one counts as one, less as none" : "");
 }
 

@@ -168,7 +168,8 @@ static struct aiFile *open_for_assimp(struct aiFileIO *io, const char *path, con
     if (strcmp(decoded, path) != 0) fd = open_regular(importer, decoded, &info);
   }
   if (fd < 0) {
-    if (has_ending(path, ".mtl")) snprintf(missing_library, sizeof missing_library, "%.120s", name_of(path));
+    if (has_ending(path, ".mtl") && !*missing_library)
+      snprintf(missing_library, sizeof missing_library, "%.120s", name_of(path));
     return NULL;
   }
   if (has_ending(path, ".mtl")) missing_library[0] = 0;

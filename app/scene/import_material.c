@@ -60,8 +60,7 @@ void send_alpha_of(struct importer *importer, const struct alpha_source *source,
                    struct material_alpha *out) {
   /* The highest alpha that there can be is factor. */
   out->invisible = source->factor < source->cutoff;
-  if (out->invisible && !importer->transparent_count++)
-    snprintf(importer->transparent, sizeof importer->transparent, "%.60s", name);
+  snprintf(out->name, sizeof out->name, "%.40s", name);
   if (out->invisible || !textured || source->cutoff <= 0) return;
   out->texture = send_texture(importer, source);
   out->cutoff = source->cutoff;
@@ -76,7 +75,7 @@ static void send_material(struct importer *importer, const struct aiScene *model
   aiGetMaterialString(material, AI_MATKEY_NAME, &name);
   if (aiGetMaterialFloatArray(material, AI_MATKEY_OPACITY, &opacity, NULL) == AI_SUCCESS && isfinite(opacity))
     source.factor = fminf(opacity, 1);
-  importer->blended += source.factor >= source.cutoff && source.factor < 1;
+  out->blended = source.factor >= source.cutoff && source.factor < 1;
   int textured = find_picture(model, material, &source, &out->uv_channel);
   send_alpha_of(importer, &source, textured, name.data, out);
 }

@@ -112,7 +112,12 @@ static void copy_vertex(struct welder *w, const struct aiMesh *mesh, unsigned i,
 }
 
 struct sent_mesh send_mesh(struct importer *importer, const struct aiMesh *mesh, const struct material_alpha *alpha) {
-  if (alpha->invisible || !mesh->mVertices || mesh->mNumFaces > UINT32_MAX / 3 || mesh->mNumVertices > UINT32_MAX / 2)
+  if (alpha->invisible) {
+    if (!importer->transparent_count++) memcpy(importer->transparent, alpha->name, sizeof alpha->name);
+    return (struct sent_mesh){.tried = 1};
+  }
+  importer->blended += alpha->blended;
+  if (!mesh->mVertices || mesh->mNumFaces > UINT32_MAX / 3 || mesh->mNumVertices > UINT32_MAX / 2)
     return (struct sent_mesh){.tried = 1};
   int channel = alpha->uv_channel;
   int textured =

@@ -7,10 +7,11 @@
 
 #include "scene/import_records.h"
 
-/* What a material's holes come from. texture -1: opaque. invisible: below its cutoff everywhere. transform: where
- * texture coordinates (v upwards) are read, two rows of three. */
+/* What a material's holes come from. texture -1: opaque. invisible: below its cutoff everywhere. blended: in part.
+ * transform: where texture coordinates (v upwards) are read, two rows of three. */
 struct material_alpha {
-  int texture, uv_channel, invisible;
+  char name[48];
+  int texture, uv_channel, invisible, blended;
   float cutoff;
   double transform[6];
 };
@@ -29,10 +30,10 @@ struct importer {
   uint64_t triangles_held, triangles_placed; /* of meshes sent, each once; of instances */
   uint64_t texels;
   struct sent_texture *textures; /* those that were sent or could not be read */
-  int blended;                   /* materials whose opacity is between none and all */
+  int blended;                   /* meshes whose opacity is between none and all */
   uint64_t dropped_nan, dropped_far, dropped_area, dropped_index, dropped_instances;
-  char transparent[64]; /* the name of the first material that is not there to be seen, */
-  int transparent_count;
+  char transparent[48];  /* the material of the first mesh that is not there to be seen, */
+  int transparent_count; /* and how many such meshes there are */
 };
 
 /* Writes to the parent; ends the process where the parent has gone. */

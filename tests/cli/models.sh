@@ -20,7 +20,7 @@ printf 'newmtl leaf\nd 0.0\nnewmtl glass\nTr 0.9\nnewmtl veil\nd 0.7\nnewmtl pla
 printf "mtllib clear.mtl\n${square}usemtl leaf\nf 1 2 3\nusemtl plain\nf 1 3 4\n" >clear.obj
 drawn 3 1 "material 'leaf' is transparent" clear.obj
 printf "mtllib clear.mtl\n${square}usemtl leaf\nf 1 2 3\nusemtl glass\nf 1 3 4\nusemtl veil\nf 1 2 4\n" >clear.obj
-drawn 3 1 "material 'leaf' and 1 more are transparent.*; opacity between" clear.obj
+drawn 3 1 "material 'leaf' and others are transparent: 2 meshes.*; opacity between" clear.obj
 printf "mtllib clear.mtl\n${square}usemtl glass\nf 1 2 3\n" >clear.obj
 rejected 2 'no usable triangles.*glass.*transparent' render clear.obj
 
