@@ -14,7 +14,8 @@ void *read_file(const struct importer *importer, const char *path, size_t *size)
 /* Only the beginning: at most room bytes and a zero. Returns how many there were. */
 size_t read_head(const struct importer *importer, const char *path, char *out, size_t room);
 
-/* The same as read_file for a file named in the model: relative to the model's folder, as written, then decoded as a URI. */
+/* The same as read_file for a file named in the model: relative to the model's folder, as written, then decoded as a
+ * URI. */
 void *read_beside(const struct importer *importer, const char *name, size_t *size);
 
 /* "%20" becomes a space, and "\" a slash. In place. */

@@ -36,8 +36,8 @@ drawn 3 1 'none.mtl: the file is missing' missing.obj
 # A byte-order mark before formats that do not know one; corners counted from the end; capitals.
 printf "\xef\xbb\xbf${square}f 1 2 3\nf -4 -2 -1\n" >mark.obj
 drawn 4 0 '' mark.obj
-printf 'solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\nendloop\nendfacet\n' >low.stl
-printf 'endsolid x\n' >>low.stl
+printf 'solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\n' >low.stl
+printf 'endloop\nendfacet\nendsolid x\n' >>low.stl
 tr a-z A-Z <low.stl >capitals.stl
 printf '\xef\xbb\xbf' | cat - low.stl >mark.stl
 for f in low capitals mark; do drawn 3 0 '' $f.stl; done
@@ -45,7 +45,8 @@ for f in low capitals mark; do drawn 3 0 '' $f.stl; done
 # Strips of PLY.
 {
   printf 'ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n'
-  printf 'element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n'
+  printf 'element tristrips 1\nproperty list int int vertex_indices\nend_header\n'
+  printf '0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n'
 } >strips.ply
 rejected 2 'strips.ply: holds triangle strips' render strips.ply
 
