@@ -1,12 +1,19 @@
 #include "scene/import_place.h"
 
 #include <math.h>
+#include <sys/stat.h>
 
 #include "scene/scene.h"
 
-/* A file of a kilobyte can place a mesh a billion times. A large model's own triangles are its own affair; those that
- * only instances make are bounded, and each instance costs a draw a frame. */
-enum { INSTANCES_MAX = 1 << 16, PLACED_MAX = 1 << 25, PLACED_PER_HELD = 8 };
+/* A file of a kilobyte can place a mesh a billion times, and each instance costs draws in every frame. What a large
+ * file lists itself is its own affair; what only references to references make is bounded. */
+enum { INSTANCES_MAX = 1 << 14, BYTES_PER_INSTANCE = 64, PLACED_MAX = 1 << 25, PLACED_PER_HELD = 8 };
+
+static uint64_t instances_most(const struct importer *importer) {
+  struct stat info;
+  uint64_t by_size = stat(importer->path, &info) == 0 ? (uint64_t)info.st_size / BYTES_PER_INSTANCE : 0;
+  return by_size > INSTANCES_MAX ? by_size : INSTANCES_MAX;
+}
 
 struct place place_identity(void) {
   return (struct place){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
@@ -57,8 +64,9 @@ void send_instance(struct importer *importer, int mesh, uint64_t triangles, cons
     return;
   }
   importer->triangles_placed += triangles;
-  if (++importer->instance_count > INSTANCES_MAX)
-    refuse(importer, "places meshes more than %d times, which is as often as one scene may", INSTANCES_MAX);
+  if (++importer->instance_count > INSTANCES_MAX && (uint64_t)importer->instance_count > instances_most(importer))
+    refuse(importer, "places meshes more than %llu times, which is more than a file of its size may",
+           (unsigned long long)instances_most(importer));
   if (importer->triangles_placed > PLACED_MAX &&
       importer->triangles_placed / PLACED_PER_HELD > importer->triangles_held)
     refuse(importer, "holds %llu triangles but places them so often that there are more than %d",

@@ -109,8 +109,10 @@ static int send_new(struct importer *importer, const struct alpha_source *source
 }
 
 int send_texture(struct importer *importer, const struct alpha_source *source) {
-  for (const struct sent_texture *t = importer->textures; t; t = t->next)
-    if (is_same(&t->source, source)) return t->number;
+  for (const struct sent_texture *t = importer->textures; t; t = t->next) {
+    int same_picture = strcmp(t->source.name, source->name) == 0 && t->source.bytes == source->bytes;
+    if (is_same(&t->source, source) || (same_picture && t->number < 0)) return t->number; /* told once */
+  }
   struct sent_texture *t = import_memory(1, sizeof *t);
   t->source = *source;
   t->number = send_new(importer, source);
