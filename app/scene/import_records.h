@@ -12,7 +12,7 @@ struct record {
   uint32_t vertex_count, triangle_count; /* mesh: followed by positions, texcoords where texture >= 0, indices */
   int32_t mesh, texture;                 /* instance: which mesh; mesh: which texture */
   float cutoff;
-  float scene_from_object[16];
+  double scene_from_object[16];
   int32_t width, height, wrap_u, wrap_v; /* texture: followed by width * height bytes */
   uint32_t text_size;                    /* warning, error: followed by the text, without a terminator */
 };
