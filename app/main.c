@@ -5,6 +5,7 @@
 #include "base/interrupt.h"
 #include "base/message.h"
 #include "base/names.h"
+#include "base/streams.h"
 #include "commands/commands.h"
 #include "scene/import_process.h"
 
@@ -58,6 +59,7 @@ static int finish(int status) {
 
 int main(int argc, char **argv) {
   import_serve(argc, argv);
+  streams_hold();
   interrupt_install();
   if (argc < 2) {
     print_help(stderr, NULL);

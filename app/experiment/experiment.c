@@ -36,6 +36,7 @@ void experiment_close(struct experiment *e) {
   free(e->truth.visibility);
   free(e->mask);
   free(e->background);
+  free(e->unoccluded);
   free(e->reference_picture);
   view_free(&e->view);
   host_close(&e->host);
@@ -108,12 +109,43 @@ static int mark_pixels(struct experiment *e) {
   size_t count = pixel_count(e);
   if (!e->mask) e->mask = malloc(count);
   if (!e->background) e->background = malloc(count);
-  if (!e->mask || !e->background) return memory_error();
+  if (!e->unoccluded) e->unoccluded = malloc(count * sizeof *e->unoccluded);
+  if (!e->mask || !e->background || !e->unoccluded) return memory_error();
+  shade_unoccluded(e->view, &e->host.scene->setup.light, e->unoccluded);
   for (size_t i = 0; i < count; i++) {
     e->mask[i] = e->view->mask[i] > 0;
     e->background[i] = isnan(e->view->position[3 * i]) != 0;
   }
   return STATUS_OK;
+}
+
+static void warn_of_broken(const struct entry *entry) {
+  if (entry->error.not_finite)
+    warning("%s: %zu shadow pixels have no finite visibility: its errors are undefined", entry->spec,
+            entry->error.not_finite);
+  else if (entry->all.not_finite)
+    warning("%s: %zu pixels that face a part of the light have no finite visibility: errors over all are undefined",
+            entry->spec, entry->all.not_finite);
+}
+
+/* The very values that `render` writes, of truth and of each technique. truth, result: room for them. */
+static void compare_pictures(struct experiment *e, float *truth, float *result) {
+  size_t count = pixel_count(e);
+  shade_with(e->unoccluded, e->truth.visibility, count, truth);
+  for (int i = 0; i < e->count; i++) {
+    shade_with(e->unoccluded, e->entries[i].visibility, count, result);
+    e->entries[i].picture_error = error_picture(truth, result, e->view->receives, count);
+  }
+}
+
+static int picture_errors(struct experiment *e) {
+  size_t size = 3 * pixel_count(e) * sizeof(float);
+  float *truth = malloc(size), *result = malloc(size);
+  int there = truth && result;
+  if (there) compare_pictures(e, truth, result);
+  free(truth);
+  free(result);
+  return there ? STATUS_OK : memory_error();
 }
 
 int experiment_errors(struct experiment *e) {
@@ -123,15 +155,15 @@ int experiment_errors(struct experiment *e) {
   if (status) return status;
   for (int i = 0; i < e->count; i++) {
     struct entry *entry = &e->entries[i];
-    if (!error_measure(truth, entry->visibility, e->mask, count, &entry->error)) return memory_error();
-    if (entry->error.not_finite)
-      warning("%s: %zu shadow pixels have no finite visibility: its errors are undefined", entry->spec,
-              entry->error.not_finite);
+    if (!error_measure(truth, entry->visibility, e->mask, count, &entry->error) ||
+        !error_measure_all(truth, entry->visibility, e->view->faces, count, &entry->all))
+      return memory_error();
+    warn_of_broken(entry);
     shadow_pixels += entry->error.pixels;
     error_bound(truth, entry->visibility, e->mask, count, entry->insides.bound, &entry->bound);
   }
   if (!shadow_pixels) warning("no shadow falls on what the camera sees and the light faces: errors are undefined");
-  return STATUS_OK;
+  return picture_errors(e);
 }
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
@@ -150,12 +182,8 @@ static int make_picture(const float *unoccluded, const float *visibility, size_t
 
 int experiment_pictures(struct experiment *e) {
   size_t count = pixel_count(e);
-  float *unoccluded = malloc(count * sizeof *unoccluded);
-  if (!unoccluded) return memory_error();
-  shade_unoccluded(e->view, &e->host.scene->setup.light, unoccluded);
-  int status = make_picture(unoccluded, e->truth.visibility, count, &e->reference_picture);
+  int status = make_picture(e->unoccluded, e->truth.visibility, count, &e->reference_picture);
   for (int i = 0; i < e->count && !status; i++)
-    status = make_picture(unoccluded, e->entries[i].visibility, count, &e->entries[i].picture);
-  free(unoccluded);
+    status = make_picture(e->unoccluded, e->entries[i].visibility, count, &e->entries[i].picture);
   return status;
 }

@@ -6,7 +6,7 @@
  *     experiment_draw        one technique's visibility
  *     experiment_look        what it did on the way
  *     experiment_trace       the truth
- *     experiment_errors      each visibility against it
+ *     experiment_errors      each visibility against it, and its picture against the truth's
  *     experiment_pictures    truth and techniques, shaded
  *     experiment_close
  *
@@ -37,7 +37,8 @@ struct entry {
   float *visibility;      /* experiment_draw: one a pixel, top row first */
   struct insides insides; /* experiment_look */
   struct search_means search;
-  struct error_statistics error; /* experiment_errors */
+  struct error_statistics error, all; /* experiment_errors: as report_technique's */
+  double picture_error;
   struct error_bound bound;
   uint8_t *picture; /* experiment_pictures: RGB, sRGB, 8 bits, top row first */
 };
@@ -49,6 +50,7 @@ struct experiment {
   int count;
   struct truth truth;         /* experiment_trace */
   uint8_t *mask, *background; /* experiment_errors: 1 where errors count; 1 where there is no surface */
+  float *unoccluded;          /* experiment_errors: shade_unoccluded */
   uint8_t *reference_picture; /* experiment_pictures, as the entries' */
 };
 
@@ -76,6 +78,7 @@ int experiment_trace(struct experiment *e, int samples, int use_cache);
 /* Of all techniques, whose visibilities must be there; warns where errors are undefined. */
 int experiment_errors(struct experiment *e);
 
+/* Needs the errors. */
 int experiment_pictures(struct experiment *e);
 
 void experiment_close(struct experiment *e);

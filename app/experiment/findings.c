@@ -37,6 +37,8 @@ static int describe_technique(const struct entry *entry, int index, int saved, s
                                                      .file = out->files[index],
                                                      .parameters = cJSON_GetObjectItem(described, "parameters"),
                                                      .error = entry->error,
+                                                     .all = entry->all,
+                                                     .picture_error = entry->picture_error,
                                                      .time_median = entry->timing.median,
                                                      .time_least = entry->timing.min,
                                                      .time_most = entry->timing.max,

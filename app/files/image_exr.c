@@ -59,6 +59,24 @@ static void set_channels(exr_encode_pipeline_t *pipeline, int first_row, int wid
   }
 }
 
+/* Readers take a chunk that is as long as its pixels for one that is not packed; the library packs it all the same
+ * where packing neither saves nor costs a byte. */
+static exr_result_t (*pack)(exr_encode_pipeline_t *);
+static exr_result_t pack_or_leave(exr_encode_pipeline_t *pipeline) {
+  exr_result_t r = pack(pipeline);
+  if (!r && pipeline->compressed_bytes == pipeline->packed_bytes)
+    memcpy(pipeline->compressed_buffer, pipeline->packed_buffer, (size_t)pipeline->packed_bytes);
+  return r;
+}
+
+static exr_result_t choose_routines(exr_const_context_t context, exr_encode_pipeline_t *pipeline) {
+  exr_result_t r = exr_encoding_choose_default_routines(context, 0, pipeline);
+  if (r || !pipeline->compress_fn) return r;
+  pack = pipeline->compress_fn; /* the same function each time */
+  pipeline->compress_fn = pack_or_leave;
+  return r;
+}
+
 static exr_result_t write_rows(exr_context_t context, int width, int height, const struct exr_plane *planes,
                                int count) {
   exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
@@ -72,7 +90,7 @@ static exr_result_t write_rows(exr_context_t context, int width, int height, con
                  : exr_encoding_update(context, 0, &chunk, &pipeline);
     if (r) break;
     set_channels(&pipeline, row, width, planes, count);
-    if (row == 0) r = exr_encoding_choose_default_routines(context, 0, &pipeline);
+    if (row == 0) r = choose_routines(context, &pipeline);
     if (!r) r = exr_encoding_run(context, 0, &pipeline);
   }
   exr_encoding_destroy(context, &pipeline);

@@ -2,6 +2,7 @@
 #include "files/output.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -29,10 +30,11 @@ static char *temporary_name(const char *target) {
   return name;
 }
 
-/* The absolute name of a folder, of which the last parts need not exist. */
+/* The absolute name of a folder, of which the last parts need not exist. NULL and errno where the working directory was
+ * deleted. */
 static char *resolve_folder(const char *folder) {
   char *whole = realpath(folder, NULL);
-  if (whole || errno == ENOMEM) return whole;
+  if (whole || errno == ENOMEM || strcmp(folder, ".") == 0) return whole;
   size_t length = strlen(folder);
   while (length > 1 && folder[length - 1] == '/') length--;
   size_t stem = length;
@@ -91,6 +93,15 @@ static int open_temporary(struct output *output) {
   return -1;
 }
 
+/* A device or a FIFO, written to as it is. A FIFO that nobody reads would wait for ever. */
+static FILE *open_special(const char *path) {
+  int fd = open(path, O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  FILE *file = fd < 0 ? NULL : fdopen(fd, "wb");
+  if (file) fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) & ~O_NONBLOCK);
+  else if (fd >= 0) close(fd);
+  return file;
+}
+
 int output_open(struct output *output, const char *path) {
   memset(output, 0, sizeof *output);
   output->path = strdup(path);
@@ -104,14 +115,15 @@ int output_open(struct output *output, const char *path) {
   if (exists && S_ISDIR(info.st_mode)) {
     errno = EISDIR;
   } else if (exists && !S_ISREG(info.st_mode)) {
-    output->file = fopen(path, "wb");
+    output->file = open_special(path);
     if (output->file) return STATUS_OK;
   } else {
     output->target = output_target(path);
     output->temporary = output->target ? temporary_name(output->target) : NULL;
     if (output->temporary && open_temporary(output) == 0) return STATUS_OK;
   }
-  int status = work_error("cannot write %s: %s", path, strerror(errno));
+  const char *reason = errno == ENXIO ? "nobody reads from it" : strerror(errno);
+  int status = work_error("cannot write %s: %s", path, reason);
   forget(output);
   return status;
 }

@@ -40,9 +40,10 @@ static void unproject(const struct unprojection *u, double ndc_x, double ndc_y, 
   for (int k = 0; k < 3; k++) out[k] = (float)v3_dot(u->inverse[k], eye);
 }
 
-/* Whether the surface faces every corner of the light, and lies in front of it. */
-static int faces_light(const struct light *light, double corners[4][3], const double origin[3], const float position[3],
-                       const float normal[3]) {
+/* How many corners of the light the surface faces; none where it does not lie in front of the light. What a surface
+ * faces of a light is what lies above a plane, and a rectangle has a part there exactly if a corner is. */
+static int corners_faced(const struct light *light, double corners[4][3], const double origin[3],
+                         const float position[3], const float normal[3]) {
   double p[3], n[3], d[3];
   for (int k = 0; k < 3; k++) {
     p[k] = origin[k] + position[k];
@@ -52,12 +53,13 @@ static int faces_light(const struct light *light, double corners[4][3], const do
     v3_sub(p, light->center, d);
     if (!(v3_dot(d, light->direction) > 0)) return 0;
   }
+  int count = 0;
   for (int i = 0; i < 4; i++) {
     memcpy(d, corners[i], sizeof d);
     if (light->shape == PN_LIGHT_RECTANGLE) v3_sub(corners[i], p, d);
-    if (!(v3_dot(n, d) > 0)) return 0;
+    count += v3_dot(n, d) > 0;
   }
-  return 1;
+  return count;
 }
 
 static int allocate(struct view *view) {
@@ -65,8 +67,9 @@ static int allocate(struct view *view) {
   view->position = malloc(count * 3 * sizeof(float));
   view->normal = malloc(count * 3 * sizeof(float));
   view->mask = malloc(count * sizeof(float));
+  view->faces = malloc(count);
   view->receives = malloc(count);
-  return view->position && view->normal && view->mask && view->receives;
+  return view->position && view->normal && view->mask && view->faces && view->receives;
 }
 
 struct raw {
@@ -101,14 +104,16 @@ static void fill(struct view *view, const struct gbuffer *g, const struct light 
       size_t from = (size_t)y * (size_t)g->width + (size_t)x;
       size_t to = (size_t)(g->height - 1 - y) * (size_t)g->width + (size_t)x;
       float *p = &view->position[3 * to], *n = &view->normal[3 * to];
-      view->receives[to] = 0;
+      view->receives[to] = view->faces[to] = 0;
       view->mask[to] = 0;
       for (int k = 0; k < 3; k++) p[k] = n[k] = NAN;
       if (!(raw->depth[from] < 1)) continue;
       unproject(&u, 2 * (x + 0.5) / g->width - 1, 2 * (y + 0.5) / g->height - 1, raw->depth[from], p);
       memcpy(n, &raw->normal[3 * from], 3 * sizeof *n);
       view->receives[to] = raw->mask[from] != 0;
-      view->mask[to] = view->receives[to] && faces_light(light, corners, view->origin, p, n) ? 1 : 0;
+      int faced = view->receives[to] ? corners_faced(light, corners, view->origin, p, n) : 0;
+      view->faces[to] = faced > 0;
+      view->mask[to] = faced == 4;
     }
 }
 
@@ -141,6 +146,7 @@ void view_free(struct view **view) {
   free((*view)->position);
   free((*view)->normal);
   free((*view)->receives);
+  free((*view)->faces);
   free((*view)->mask);
   free(*view);
   *view = NULL;

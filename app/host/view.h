@@ -11,6 +11,7 @@ struct view {
   double origin[3];  /* the scene's */
   float *normal;     /* 3 a pixel, unit, turned to the camera */
   uint8_t *receives; /* the surface receives */
+  uint8_t *faces;    /* 1 where the surface receives and faces any of the light, else 0 */
   float *mask;       /* contract: 1 where the surface receives and faces all of the light, else 0 */
 };
 int view_read(const struct gbuffer *gbuffer, const struct scene *scene, struct view **out);

@@ -13,14 +13,14 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-int error_measure(const float *reference, const float *result, const uint8_t *mask, size_t count,
-                  struct error_statistics *out) {
+static int measure(const float *reference, const float *result, const uint8_t *mask, size_t count, int lit_too,
+                   struct error_statistics *out) {
   *out = (struct error_statistics){NAN, NAN, NAN, NAN, NAN, 0, 0};
   double *sizes = malloc((count ? count : 1) * sizeof *sizes);
   if (!sizes) return 0;
   double sum = 0, squares = 0, signed_sum = 0;
   for (size_t i = 0; i < count; i++) {
-    if (!mask[i] || !is_shadow(reference[i], result[i])) continue;
+    if (!mask[i] || !(lit_too || is_shadow(reference[i], result[i]))) continue;
     double error = (double)result[i] - (double)reference[i];
     out->not_finite += !isfinite(error);
     sizes[out->pixels++] = fabs(error);
@@ -39,6 +39,27 @@ int error_measure(const float *reference, const float *result, const uint8_t *ma
   }
   free(sizes);
   return 1;
+}
+
+int error_measure(const float *reference, const float *result, const uint8_t *mask, size_t count,
+                  struct error_statistics *out) {
+  return measure(reference, result, mask, count, 0, out);
+}
+
+int error_measure_all(const float *reference, const float *result, const uint8_t *mask, size_t count,
+                      struct error_statistics *out) {
+  return measure(reference, result, mask, count, 1, out);
+}
+
+double error_picture(const float *reference, const float *result, const uint8_t *mask, size_t count) {
+  double sum = 0;
+  size_t values = 0;
+  for (size_t i = 0; i < count; i++) {
+    if (!mask[i]) continue;
+    for (size_t k = 3 * i; k < 3 * i + 3; k++) sum += fabs((double)result[k] - (double)reference[k]);
+    values += 3;
+  }
+  return values && isfinite(sum) ? sum / (double)values : NAN;
 }
 
 void error_bound(const float *reference, const float *result, const uint8_t *mask, size_t count, const float *bound,

@@ -123,8 +123,8 @@ static void write_table(FILE *file, const struct report *report, const int *orde
   double first = report->technique_count ? report->techniques[0].error.mae : NAN;
   fputs("<table>\n<thead><tr><th>technique</th><th>mean error</th><th>ratio to ", file);
   write_escaped(file, report->technique_count ? report->techniques[0].label : "the first");
-  fputs("</th><th>rms</th><th>95 %</th><th>max</th><th>bias</th><th>shadow pixels</th><th>ms a "
-        "frame</th></tr></thead>\n<tbody>\n",
+  fputs("</th><th>rms</th><th>95 %</th><th>max</th><th>bias</th><th>shadow pixels</th><th>mean over all</th>"
+        "<th>picture</th><th>ms a frame</th></tr></thead>\n<tbody>\n",
         file);
   for (int i = 0; i < report->technique_count; i++) {
     const struct report_technique *technique = &report->techniques[order[i]];
@@ -138,12 +138,17 @@ static void write_table(FILE *file, const struct report *report, const int *orde
     write_cell(file, "%.4f", technique->error.max);
     write_cell(file, "%+.4f", technique->error.bias);
     write_cell(file, "%.0f", (double)technique->error.pixels);
+    write_cell(file, "%.4f", technique->all.mae);
+    write_cell(file, "%.4f", technique->picture_error);
     write_cell(file, "%.2f", technique->time_median);
     fputs("</tr>\n", file);
   }
   fputs("</tbody>\n</table>\n<p class=\"faint\">ratio: the technique's mean error divided by that of ", file);
   write_escaped(file, report->technique_count ? report->techniques[0].label : "the first");
-  fputs(", the first one named; below 1 is better than it</p>\n", file);
+  fputs(", the first one named; below 1 is better than it. mean over all: mean error over every "
+        "pixel that faces any of the light, lit ones too. picture: mean difference of the shaded values, 1 being "
+        "white</p>\n",
+        file);
 }
 
 /* Choice 0 is the truth, choice i + 1 technique i. */
@@ -211,6 +216,10 @@ static void write_summary(FILE *file, const struct report_technique *technique) 
   write_number(file, "%.4f", technique->error.max);
   fputs(", bias ", file);
   write_number(file, "%+.4f", technique->error.bias);
+  fputs("; over all that the light reaches ", file);
+  write_number(file, "%.4f", technique->all.mae);
+  fputs(", picture ", file);
+  write_number(file, "%.4f", technique->picture_error);
   fputs("; ", file);
   write_number(file, "%.2f", technique->time_median);
   fputs(" ms a frame</p>\n", file);

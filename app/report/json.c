@@ -24,8 +24,8 @@ static int add_copy(cJSON *object, const char *name, const cJSON *value) {
   return add_item(object, name, value ? cJSON_Duplicate(value, 1) : cJSON_CreateObject());
 }
 
-static int add_error(cJSON *object, const struct error_statistics *error) {
-  cJSON *item = cJSON_AddObjectToObject(object, "error");
+static int add_error(cJSON *object, const char *name, const struct error_statistics *error) {
+  cJSON *item = cJSON_AddObjectToObject(object, name);
   return item && add_number(item, "mae", error->mae) && add_number(item, "rmse", error->rmse) &&
          add_number(item, "p95", error->p95) && add_number(item, "max", error->max) &&
          add_number(item, "bias", error->bias) && add_number(item, "pixels", (double)error->pixels);
@@ -80,8 +80,9 @@ static int add_result(cJSON *results, const struct report_technique *technique) 
   }
   return add_text(item, "technique", technique->name) && add_text(item, "label", technique->label) &&
          add_text(item, "file", technique->file) && add_copy(item, "parameters", technique->parameters) &&
-         add_error(item, &technique->error) && add_times(item, technique) && add_search(item, technique) &&
-         add_bound(item, &technique->bound) && add_scatter(item, technique);
+         add_error(item, "error", &technique->error) && add_error(item, "all", &technique->all) &&
+         add_number(item, "picture", technique->picture_error) && add_times(item, technique) &&
+         add_search(item, technique) && add_bound(item, &technique->bound) && add_scatter(item, technique);
 }
 
 cJSON *report_head(const char *version, const char *renderer, const char *gl_version, const cJSON *scene) {

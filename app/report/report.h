@@ -23,9 +23,11 @@ struct report_stage {
 /* One technique. Numbers that are not known are NaN. Everything is the caller's. */
 struct report_technique {
   const char *name, *label;
-  const char *file;        /* of the buffer in --save-dir; NULL: not saved */
-  const cJSON *parameters; /* an object, copied; NULL: none */
-  struct error_statistics error;
+  const char *file;                          /* of the buffer in --save-dir; NULL: not saved */
+  const cJSON *parameters;                   /* an object, copied; NULL: none */
+  struct error_statistics error;             /* over shadow pixels */
+  struct error_statistics all;               /* over every receiving pixel that faces any of the light */
+  double picture_error;                      /* error_picture over receiving pixels */
   double time_median, time_least, time_most; /* milliseconds a frame */
   const struct report_stage *stages;
   int stage_count;

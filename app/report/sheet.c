@@ -24,7 +24,7 @@ enum {
   TILE_MAX = 640, /* pictures wider or taller than this are shrunk */
   TILE_MIN = 160,
   CELL_LEAST = 540, /* what the text needs */
-  LEGEND = 300,     /* what the legend needs */
+  LEGEND = 320,     /* what the legend needs */
   SIDE_MAX = 30000  /* of the sheet; cairo's own limit is 32767 */
 };
 #define PIXELS_MAX 100e6
@@ -188,8 +188,9 @@ static int draw_technique(struct pen *pen, const struct layout *layout, const st
     snprintf(ratio, sizeof ratio, "%.3f \xc3\x97 the mean error of %.80s", error->mae / first,
              report->techniques[0].label);
   colour(pen, faint);
-  write_line(pen, x, y + 63, width, 14.5, 0, "%s ms a frame   %zu shadow pixels",
-             number("%.2f", technique->time_median).text, error->pixels);
+  write_line(pen, x, y + 63, width, 14.5, 0, "%s ms a frame   %zu shadow pixels   all %s   picture %s",
+             number("%.2f", technique->time_median).text, error->pixels, number("%.4f", technique->all.mae).text,
+             number("%.4f", technique->picture_error).text);
   write_line(pen, x, y + 84, width, 14.5, 0, "%s", ratio);
   uint8_t *map = picture_error_map(report, technique->visibility);
   int top = y + CELL_HEAD;
@@ -254,6 +255,8 @@ static void draw_legend(struct pen *pen, int x, int y, int width) {
   write_line(pen, x, y + 246, width, 14, 0,
              "where the reference or the technique sees less than 1 - 1/2048 of the light.");
   write_line(pen, x, y + 266, width, 14, 0, "mean, rms, 95 %% and max are of |error|; bias is the mean error.");
+  write_line(pen, x, y + 286, width, 14, 0, "all: mean over every pixel that faces any of the light, lit ones too;");
+  write_line(pen, x, y + 306, width, 14, 0, "picture: mean over all pixels of the shaded values, 1 being white.");
 }
 
 static int draw_truth(struct pen *pen, const struct layout *layout, const struct report *report, int x, int y) {

@@ -42,8 +42,8 @@ void report_table(const struct report *report, FILE *file) {
   char ratio[80];
   snprintf(ratio, sizeof ratio, "to %s", first->name);
   int ratio_width = column_width(ratio, 8);
-  fprintf(file, "%-*s  %7s  %*s  %7s  %7s  %7s  %8s  %10s\n", label_width, "technique", "mean", ratio_width, ratio,
-          "rms", "95 %", "max", "bias", "ms a frame");
+  fprintf(file, "%-*s  %7s  %*s  %7s  %7s  %7s  %8s  %7s  %7s  %10s\n", label_width, "technique", "mean", ratio_width,
+          ratio, "rms", "95 %", "max", "bias", "all", "picture", "ms a frame");
   for (int i = 0; i < report->technique_count; i++) {
     const struct report_technique *technique = &report->techniques[order[i]];
     fprintf(file, "%-*s", label_width, technique->label);
@@ -53,6 +53,8 @@ void report_table(const struct report *report, FILE *file) {
     print_number(file, 7, "%.4f", technique->error.p95);
     print_number(file, 7, "%.4f", technique->error.max);
     print_number(file, 8, "%+.4f", technique->error.bias);
+    print_number(file, 7, "%.4f", technique->all.mae);
+    print_number(file, 7, "%.4f", technique->picture_error);
     print_number(file, 10, "%.2f", technique->time_median);
     fputc('\n', file);
   }

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/message.h"
+#include "base/utf8.h"
 #include "files/image.h"
 #include "scene/import_process.h"
 #include "scene/import_records.h"
@@ -69,6 +70,11 @@ static enum received receive_texture(int fd, const struct record *r, struct scen
   return !texture.alpha || scene_add_texture(scene, &texture) < 0 ? RECEIVED_BROKEN : RECEIVED_MORE;
 }
 
+static enum received receive_instance(const struct record *r, struct scene *scene) {
+  if (r->mesh < 0 || r->mesh >= scene->mesh_count) return RECEIVED_BROKEN;
+  return scene_add_instance(scene, r->mesh, r->scene_from_object, 1, 1) < 0 ? RECEIVED_BROKEN : RECEIVED_MORE;
+}
+
 static enum received receive_text(int fd, const struct record *r, const char *path) {
   char text[512];
   if (r->text_size >= sizeof text || read_all(fd, text, r->text_size)) return RECEIVED_BROKEN;
@@ -88,8 +94,7 @@ static enum received receive(int fd, const char *path, struct scene *scene) {
   case RECORD_MESH: return receive_mesh(fd, &r, scene);
   case RECORD_TEXTURE: return receive_texture(fd, &r, scene);
   case RECORD_INSTANCE:
-    if (r.mesh < 0 || r.mesh >= scene->mesh_count) return RECEIVED_BROKEN;
-    return scene_add_instance(scene, r.mesh, r.scene_from_object, 1, 1) < 0 ? RECEIVED_BROKEN : RECEIVED_MORE;
+    return receive_instance(&r, scene);
   case RECORD_WARNING:
   case RECORD_ERROR: return receive_text(fd, &r, path);
   case RECORD_END: return RECEIVED_END;
@@ -119,6 +124,7 @@ static struct scene *scene_named_after(const char *path) {
   if (!scene) return NULL;
   char *dot = strrchr(scene->name, '.');
   if (dot && dot != scene->name) *dot = 0;
+  utf8_mend(scene->name);
   return scene;
 }
 

@@ -1,6 +1,5 @@
 #include "scene/import_mesh.h"
 
-#include <assimp/mesh.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,21 +93,32 @@ static void welder_init(struct welder *w, uint32_t vertices, int textured) {
   if (!w->slots || !w->positions || (textured && !w->texcoords)) _exit(1);
 }
 
-static void copy_vertex(struct welder *w, const struct aiMesh *mesh, unsigned i, int uv_channel, uint32_t *index) {
+static void copy_vertex(struct welder *w, const struct aiMesh *mesh, unsigned i, const struct material_alpha *alpha,
+                        uint32_t *index) {
   const struct aiVector3D *v = &mesh->mVertices[i];
   const float p[3] = {v->x + 0.0f, v->y + 0.0f, v->z + 0.0f}; /* -0 becomes 0: the same place */
   if (!w->texcoords) {
     *index = weld(w, p, NULL);
     return;
   }
-  const struct aiVector3D *t = &mesh->mTextureCoords[uv_channel][i];
-  const float uv[2] = {isfinite(t->x) ? t->x : 0, isfinite(t->y) ? t->y : 0};
+  const struct aiVector3D *t = &mesh->mTextureCoords[alpha->uv_channel][i];
+  const double *m = alpha->transform;
+  float uv[2];
+  for (int k = 0; k < 2; k++) {
+    uv[k] = (float)(m[3 * k] * (double)t->x + m[3 * k + 1] * (double)t->y + m[3 * k + 2]);
+    if (!isfinite(uv[k])) uv[k] = 0;
+  }
   *index = weld(w, p, uv);
 }
 
-int send_mesh(struct importer *importer, const struct aiMesh *mesh, const struct material_alpha *alpha) {
-  if (alpha->invisible || !mesh->mVertices || mesh->mNumFaces > UINT32_MAX / 3 || mesh->mNumVertices > UINT32_MAX / 2)
-    return -1;
+struct sent_mesh send_mesh(struct importer *importer, const struct aiMesh *mesh, const struct material_alpha *alpha) {
+  if (alpha->invisible) {
+    if (!importer->transparent_count++) memcpy(importer->transparent, alpha->name, sizeof alpha->name);
+    return (struct sent_mesh){.tried = 1};
+  }
+  importer->blended += alpha->blended;
+  if (!mesh->mVertices || mesh->mNumFaces > UINT32_MAX / 3 || mesh->mNumVertices > UINT32_MAX / 2)
+    return (struct sent_mesh){.tried = 1};
   int channel = alpha->uv_channel;
   int textured =
       alpha->texture >= 0 && channel >= 0 && channel < AI_MAX_NUMBER_OF_TEXTURECOORDS && mesh->mTextureCoords[channel];
@@ -119,7 +129,7 @@ int send_mesh(struct importer *importer, const struct aiMesh *mesh, const struct
   for (unsigned f = 0; f < mesh->mNumFaces; f++) {
     const unsigned *corners = usable(importer, mesh, &mesh->mFaces[f]);
     if (!corners) continue;
-    for (int k = 0; k < 3; k++) copy_vertex(&w, mesh, corners[k], channel, &indices[3 * (size_t)triangles + k]);
+    for (int k = 0; k < 3; k++) copy_vertex(&w, mesh, corners[k], alpha, &indices[3 * (size_t)triangles + k]);
     triangles++;
   }
   if (triangles) {
@@ -137,5 +147,6 @@ int send_mesh(struct importer *importer, const struct aiMesh *mesh, const struct
   free(w.positions);
   free(w.texcoords);
   free(indices);
-  return triangles ? importer->mesh_count++ : -1;
+  importer->triangles_held += triangles;
+  return (struct sent_mesh){.tried = 1, .number = triangles ? importer->mesh_count++ : -1, .triangles = triangles};
 }

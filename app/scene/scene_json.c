@@ -1,6 +1,7 @@
 #include "scene/scene_json.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,7 +68,8 @@ cJSON *scene_to_json(const struct scene *scene) {
 
 static char *read_text(const char *path, size_t *size) {
   struct stat info;
-  FILE *file = fopen(path, "rb");
+  int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a FIFO would wait for somebody who writes */
+  FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
   char *text = NULL;
   if (!file) {
     input_error("--setup %s: %s", path, strerror(errno));

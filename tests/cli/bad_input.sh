@@ -4,8 +4,12 @@
 
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n' >ok.obj
 : >empty.obj
-head -c 4096 /dev/urandom >garbage.glb
-head -c 300 /dev/urandom >garbage.xyz
+# Noise that is the same each time; one has words of a format in it, as any noise has now and then.
+noise() { LC_ALL=C awk -v n="$1" 'BEGIN { s = 1; for (i = 0; i < n; i++) { s = (s * 1103515245 + 12345) % 2147483648
+  printf "%c", 128 + int(s / 65536) % 127 } }'; }
+noise 4096 >garbage.glb
+{ noise 100; printf '\nv \nf 1\n'; noise 4000; } >words.glb
+noise 300 >garbage.xyz
 printf 'v 0 0 0\nv 1 0 0\nl 1 2\n' >lines.obj
 printf 'v nan 0 0\nv inf 0 0\nv 0 1 0\nf 1 2 3\n' >nan.obj
 printf 'v 1e30 0 0\nv 0 1e30 0\nv 0 1 0\nf 1 2 3\n' >far.obj
@@ -28,6 +32,7 @@ rejected 2 'is empty' render empty.obj
 rejected 2 'not a regular file' render pipe.obj
 rejected 2 'SCENE is empty' render ''
 rejected 2 'garbage.glb: .*damaged, or not a .glb file' render garbage.glb
+rejected 2 'words.glb: .*damaged, or not a .glb file' render words.glb
 rejected 2 'garbage.xyz: ' render garbage.xyz
 rejected 2 'cut.gltf: ' render cut.gltf
 rejected 2 'cut.stl: ' render cut.stl

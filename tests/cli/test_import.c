@@ -141,16 +141,22 @@ static void test_gltf_factor(void **state) {
   assert_int_equal(scene_load(&request, &scene), 2);
 }
 
-/* OPAQUE and BLEND are opaque, whatever the texture holds; a texture that is missing or broken leaves the material
- * opaque. */
+/* OPAQUE is opaque, whatever the texture holds; what is blended casts where its opacity is at least one half; a
+ * texture that is missing or broken leaves the material opaque. */
 static void test_opaque(void **state) {
   (void)state;
   write_holes();
-  write_gltf("blend.gltf", "{\"mesh\":0}",
-             "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},\"alphaMode\":\"BLEND\"}");
-  struct scene *scene = load("blend.gltf", 0);
+  write_gltf("opaque.gltf", "{\"mesh\":0}",
+             "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},\"baseColorFactor\":[1,1,1,0.1]}}");
+  struct scene *scene = load("opaque.gltf", 0);
   assert_int_equal(scene->meshes[0].texture, -1);
   assert_int_equal(scene->texture_count, 0);
+  scene_free(&scene);
+  write_gltf("blend.gltf", "{\"mesh\":0}",
+             "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},\"alphaMode\":\"BLEND\"}");
+  scene = load("blend.gltf", 0);
+  assert_int_equal(scene->meshes[0].texture, 0);
+  assert_true(scene->meshes[0].cutoff == 0.5f);
   scene_free(&scene);
   write_gltf("missing.gltf", "{\"mesh\":0}", mask_material);
   for (int broken = 0; broken < 2; broken++) {

@@ -77,6 +77,38 @@ static void undefined_is_nan(void **state) {
   assert_true(error.pixels == 2 && error.not_finite == 1 && isnan(error.mae) && isnan(error.max));
 }
 
+/* Every pixel of the mask counts, those lit in both too: errors 0, 0.25, -0.5, 0, 1. */
+static void all_counts_lit_pixels(void **state) {
+  (void)state;
+  const float reference[] = {1, 0.5f, 0.75f, 0.25f, 0, 0.9f}, result[] = {1, 0.75f, 0.25f, 0.25f, 1, 0.1f};
+  const uint8_t mask[] = {1, 1, 1, 1, 1, 0}, nothing[6] = {0};
+  struct error_statistics all;
+  assert_true(error_measure_all(reference, result, mask, 6, &all));
+  assert_int_equal(all.pixels, 5);
+  assert_true(all.mae == 1.75 / 5 && all.rmse == sqrt(1.3125 / 5) && all.p95 == 1 && all.max == 1);
+  assert_true(all.bias == 0.75 / 5);
+  assert_true(error_measure_all(reference, result, nothing, 6, &all));
+  assert_true(all.pixels == 0 && isnan(all.mae) && isnan(all.max));
+  const float lit[] = {1, 1}, broken[] = {1, NAN};
+  assert_true(error_measure_all(lit, lit, mask, 2, &all));
+  assert_true(all.pixels == 2 && all.mae == 0 && all.max == 0 && all.bias == 0);
+  assert_true(error_measure_all(lit, broken, mask, 2, &all));
+  assert_true(all.not_finite == 1 && isnan(all.mae));
+}
+
+/* Two pixels count, of three channels: |differences| 0.25, 0, 0.5 and 0, 0, 1; the one between does not. */
+static void picture_by_hand(void **state) {
+  (void)state;
+  const float truth[] = {0.5f, 0.5f, 1, 9, 9, 9, 0, 0, 1}, result[] = {0.25f, 0.5f, 1.5f, 0, 0, 0, 0, 0, 2};
+  const uint8_t mask[] = {1, 0, 1}, nothing[3] = {0};
+  assert_true(error_picture(truth, result, mask, 3) == 1.75 / 6);
+  assert_true(error_picture(result, truth, mask, 3) == 1.75 / 6);
+  assert_true(error_picture(truth, truth, mask, 3) == 0);
+  assert_true(isnan(error_picture(truth, result, nothing, 3)) && isnan(error_picture(truth, result, mask, 0)));
+  const float broken[] = {0, NAN, 0};
+  assert_true(isnan(error_picture(truth, broken, mask, 1)));
+}
+
 /* ---- a made-up comparison ---------------------------------------------------------------------------------------- */
 
 enum { WIDTH = 90, HEIGHT = 60, COUNT = WIDTH * HEIGHT };
@@ -126,6 +158,8 @@ static void make(struct made *made) {
                                                     .visibility = made->visibility[t],
                                                     .picture = made->pictures[t + 1]};
     assert_true(error_measure(made->reference, made->visibility[t], made->mask, COUNT, &made->techniques[t].error));
+    made->techniques[t].all = (struct error_statistics){.mae = 0.0611 + t, .max = 1, .pixels = 4321};
+    made->techniques[t].picture_error = 0.0377 + t;
   }
   made->report = (struct report){.version = "0.1.0",
                                  .renderer = "a renderer",
@@ -175,6 +209,9 @@ static void table_is_sorted(void **state) {
   assert_int_equal(sscanf(pcss, " pcss:samples=8 %lf %lf", &label_mae, &ratio), 2);
   assert_true(fabs(label_mae - made.techniques[1].error.mae) < 1e-4);
   assert_true(fabs(ratio - made.techniques[1].error.mae / made.techniques[0].error.mae) < 1e-3);
+  assert_non_null(strstr(text, "      all  picture  ms a frame\n"));
+  assert_non_null(strstr(hard, "   0.0611   0.0377  "));
+  assert_non_null(strstr(pcss, "   1.0611   1.0377  "));
   free(text);
   made.techniques[1].error.mae = NAN; /* undefined goes last, the others keep their order */
   int order[3];
@@ -225,6 +262,8 @@ static void json_has_the_contracts_members(void **state) {
   assert_true(fabs(number_at(pcss, "error.mae") - made.techniques[1].error.mae) < 1e-15);
   assert_true(fabs(number_at(pcss, "error.bias") - made.techniques[1].error.bias) < 1e-15);
   assert_true(number_at(pcss, "error.pixels") == (double)made.techniques[1].error.pixels);
+  assert_true(number_at(pcss, "all.mae") == 1.0611 && number_at(pcss, "all.pixels") == 4321);
+  assert_true(number_at(pcss, "all.max") == 1 && number_at(pcss, "picture") == 1.0377);
   assert_true(number_at(pcss, "time_ms.total.median") == 4.75 && number_at(pcss, "time_ms.stages.gather") == 2.25);
   assert_true(cJSON_IsNull(cJSON_GetObjectItem(cJSON_GetObjectItem(bitmask, "error"), "mae")));
   assert_true(cJSON_IsNull(cJSON_GetObjectItem(bitmask, "file")));
@@ -412,6 +451,8 @@ int main(void) {
       cmocka_unit_test(shadow_begins_at_its_threshold),
       cmocka_unit_test(percentile_is_the_nearest_rank),
       cmocka_unit_test(undefined_is_nan),
+      cmocka_unit_test(all_counts_lit_pixels),
+      cmocka_unit_test(picture_by_hand),
       cmocka_unit_test(table_is_sorted),
       cmocka_unit_test(json_has_the_contracts_members),
       cmocka_unit_test(error_colours_diverge),

@@ -224,6 +224,21 @@ static void test_crossing_and_behind(void **state) {
     }
 }
 
+/* What of a box lies nearer than 1/256 of the farthest caster is cut off: of a beam beside the light the map takes what
+ * opens to x / (z_max / 256), though its near end opens four times as far. */
+static void test_beam_beside_the_light(void **state) {
+  (void)state;
+  static pn_casters c;
+  pni_frame f = frame_along_z(false);
+  pni_fit_request request = request_of(&f, 64);
+  memset(&c, 0, sizeof c);
+  put_box(&c, 0, v3(0, 0, 9.5), v3(1, 1, 0.5));
+  put_box(&c, 1, v3(0.055, 0, 0.505), v3(0.005, 0.005, 0.495)); /* z from 0.01 to 1 */
+  pni_fit_result r = fit(&c, &request);
+  double most = 0.06 / (10 / 256.0), step = 1 / 16.0; /* 32 to 64 steps in an extent of 1.6 to 2 */
+  assert_true(r.bounds[2] >= most - 1e-6 && r.bounds[2] <= most + step);
+}
+
 static void test_near_and_range(void **state) {
   (void)state;
   static pn_casters c;
@@ -495,6 +510,7 @@ int main(void) {
       cmocka_unit_test(test_moving_inside),
       cmocka_unit_test(test_snapping_is_stable),
       cmocka_unit_test(test_crossing_and_behind),
+      cmocka_unit_test(test_beam_beside_the_light),
       cmocka_unit_test(test_near_and_range),
       cmocka_unit_test(test_close_to_the_light),
       cmocka_unit_test(test_tiles),
