@@ -1,5 +1,6 @@
 /* A normal that may be wrong by sigma: nothing on the true tangent plane blocks, whichever way the normal errs, and
- * what stands up from it does. From points in the light's frame: (Q - P) . n = (Q - P) . (n - n'), n' the true normal. */
+ * what stands up from it does. From points in the light's frame: (Q - P) . n = (Q - P) . (n - n'), n' the true
+ * normal. */
 #include <stdlib.h>
 #include <string.h>
 
