@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <math.h>
 #include <string.h>
 
 #include "base/message.h"
@@ -115,6 +116,9 @@ static void describe_light(const struct client *client, const struct setup *setu
   desc->half_v = (float)light->half[1];
   desc->fit = setup->fit;
   for (int i = 0; i < 6; i++) desc->fit_bounds[i] = (float)(setup->fit_bounds[i] - client->origin[i % 3]);
+  /* The library takes a box that is a point for one that was forgotten; here it was asked for, and warned of. */
+  if (setup->fit == PN_FIT_GIVEN && memcmp(desc->fit_bounds, desc->fit_bounds + 3, sizeof(float[3])) == 0)
+    desc->fit_bounds[3] = nextafterf(desc->fit_bounds[3], INFINITY);
   desc->map_width = setup->map[0];
   desc->map_height = setup->map[1];
 }

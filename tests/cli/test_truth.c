@@ -129,7 +129,8 @@ static int corners_faced(const struct lamp *l, const double p[3], const double n
   return behind(l, p) ? 0 : count;
 }
 
-/* The form factor as a sum over SIDE x SIDE parts of the light: cosine times cosine over pi r^2. A part that the horizon
+/* The form factor as a sum over SIDE x SIDE parts of the light: cosine times cosine over pi r^2. A part that the
+ * horizon
  * runs through is taken whole or not at all, though its cosine is next to nothing there. A sun counts as its middle. */
 static double form_factor(const struct lamp *l, const double p[3], const double n[3]) {
   enum { SIDE = 24 };

@@ -1,5 +1,6 @@
-/* The mean w of pcss's blockers: what a blocker hides of the light is its weight, and nothing hides more than all of it.
- * So where a far blocker hides the whole light, one that fills a single texel right before the receiver counts for no
+/* The mean w of pcss's blockers: what a blocker hides of the light is its weight, and nothing hides more than all of
+ * it. So where a far blocker hides the whole light, one that fills a single texel right before the receiver counts
+ * for no
  * more than half. And where two blockers hide a half each, the mean is their mean. */
 #include <stdlib.h>
 

@@ -1,5 +1,6 @@
-/* A normal that may be wrong by sigma: nothing on the true tangent plane blocks, whichever way the normal errs, and what
- * stands up from it does. From points in the light's frame: (Q - P) . n = (Q - P) . (n - n'), n' the true normal. */
+/* A normal that may be wrong by sigma: nothing on the true tangent plane blocks, whichever way the normal errs, and
+ * what stands up from it does. From points in the light's frame: (Q - P) . n = (Q - P) . (n - n'), n' the true
+ * normal. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,7 +71,8 @@ static void check(bool sun) {
 }
 
 /* |d| sin(sigma) bounds what a turned normal adds: on the plane nothing blocks. Straight up from it the front is at
- * least cos(sigma) |d|, and the lever no more than (4 + sqrt 3) |d| for directions within a unit square: below sigma 0.1
+ * least cos(sigma) |d|, and the lever no more than (4 + sqrt 3) |d| for directions within a unit square: below sigma
+ * 0.1
  * that blocks. */
 static void test_rectangle(void **state) {
   (void)state;
