@@ -33,13 +33,13 @@ static int file_says(const struct importer *importer, const char *word) {
   return found;
 }
 
-/* Assimp makes metres of Collada's units; a scene is in the file's. */
+/* Assimp makes metres of Collada's units, by a float, which is what has to be taken back; a scene is in the file's. */
 static void undo_unit(struct importer *importer) {
   size_t size = 0;
   char *bytes = read_file(importer, importer->path, &size), *end = NULL;
   const char *unit = bytes ? strstr(bytes, "<unit") : NULL, *close = unit ? strchr(unit, '>') : NULL;
   const char *meter = close ? memmem(unit, (size_t)(close - unit), "meter=", 6) : NULL;
-  double metres = meter ? strtod(meter + 7, &end) : 0;
+  double metres = meter ? strtof(meter + 7, &end) : 0;
   if (metres > 0 && end > meter + 7 && isfinite(1 / metres))
     for (int i = 0; i < 9; i++) importer->turn[i] /= metres;
   free(bytes);
