@@ -169,7 +169,7 @@ static pn_result plan_meshes(pn_casters *casters, const pni_caster_draw *draw) {
   pn_result result = any[1] ? check_alpha_textures(casters, draw->groups) : PN_OK;
   for (int alpha = 0; alpha < 2 && result == PN_OK; alpha++) {
     char defines[DEFINES];
-    pni_program_key key = caster_program(alpha, draw->peel != NULL, defines);
+    pni_program_key key = caster_program(alpha, draw->peel != NULL, draw->floor != NULL, defines);
     if (any[alpha]) result = pni_pass_program(&casters->object.context->gpu, &key);
   }
   return result;
