@@ -22,6 +22,7 @@ static int run_command(const struct command_row *command, const struct options *
   case COMMAND_RENDER: return command_render(o);
   case COMMAND_COMPARE: return command_compare(o);
   case COMMAND_BENCH: return command_bench(o);
+  case COMMAND_MOTION: return command_motion(o);
   case COMMAND_LIST: return command_list(o);
   case COMMAND_INFO: return command_info(o);
   case COMMAND_HELP: return command_help(o);

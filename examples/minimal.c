@@ -58,7 +58,7 @@ static GLuint shadows_draw(shadows *s, GLuint depth, const float *box, const flo
   memcpy(desc.projection, projection, sizeof desc.projection);
   pn_result result = pn_instance_move(s->casters, s->box, box);
   if (!result) result = pn_receiver_set(s->view, &desc);
-  if (!result) result = pn_maps_update(s->light, s->casters, PN_GROUPS_ALL, NULL, 0);
+  if (!result) result = pn_maps_update(s->light, s->casters, PN_GROUPS_ALL, &s->view, 1);
   if (!result) result = pn_visibility(s->light, s->view);
   if (!result) result = pn_result_image(s->light, s->view, &visibility);
   return result ? 0 : visibility.texture;

@@ -15,6 +15,7 @@ static void release_light(pni_object *object, bool abandon) {
   pni_gpu *gpu = pni_light_gpu(light);
   pni_kept_free(gpu, &light->kept, abandon);
   pni_maps_free(gpu, &light->maps, abandon);
+  for (int i = 0; i < 2; i++) pni_texture_free(gpu, &light->trim[i], abandon);
   pni_buffer_free(gpu, &light->block, abandon);
   pni_clock_free(gpu, &light->clock, abandon);
 }
@@ -58,7 +59,7 @@ static pn_result check_shape(pni_gpu *gpu, const pn_light_desc *d) {
 
 static pn_result check_maps(pni_gpu *gpu, const pn_light_desc *d) {
   int most = gpu->can.texture_size_max < PN_MAP_SIZE_MAX ? gpu->can.texture_size_max : PN_MAP_SIZE_MAX;
-  if ((int)d->fit < PN_FIT_CASTERS || d->fit > PN_FIT_GIVEN)
+  if ((int)d->fit < PN_FIT_VISIBLE || d->fit > PN_FIT_GIVEN)
     return pni_fail(gpu, PN_ERROR_ARGUMENT, PN_MESSAGE_LIGHT_FIT, "fit %d is unknown", (int)d->fit);
   for (int i = 0; i < 3 && d->fit == PN_FIT_GIVEN; i++)
     if (!isfinite(d->fit_bounds[i]) || !isfinite(d->fit_bounds[3 + i]) || d->fit_bounds[i] > d->fit_bounds[3 + i])

@@ -14,6 +14,7 @@ struct pn_light {
   const pni_technique_class *technique;
   double values[PNI_PARAMETERS_MAX];
   pni_maps maps;
+  pni_texture trim[2]; /* maps/trim.c's, while a fit is made */
   pni_buffer block;
   pni_light_block uploaded; /* what block holds */
   pni_kept kept;            /* by the technique */

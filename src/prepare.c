@@ -1,5 +1,5 @@
-/* pn_prepare: what a light will need is compiled by drawing it once: a scene of two triangles and a small view go
- * through the same calls as the host's frames will. */
+/* pn_prepare: what a light will need is compiled by drawing it: a scene of two triangles and a small view go through
+ * the same calls as the host's frames will, without a ground and with one. */
 #include <string.h>
 
 #include "gl/host.h"
@@ -65,9 +65,12 @@ static const float triangle[9] = {-0.2f, -0.1f, -1, 0.2f, -0.2f, -1, 0, 0.3f, -1
 static const float texcoords[6] = {0, 0, 1, 0, 0, 1};
 static const float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-static pn_result add_triangle(rehearsal *r, pn_gl alpha) {
+/* In the plane that the view shows: a ground, without which no caster is drawn over a floor. */
+static const float ground[9] = {-0.9f, -0.9f, 0, 0.9f, -0.9f, 0, 0, 0.9f, 0};
+
+static pn_result add_triangle(rehearsal *r, const float *corners, pn_gl alpha) {
   pn_mesh mesh;
-  pn_mesh_desc desc = {.positions = {.data = triangle, .count = 3}, .alpha_texture = alpha};
+  pn_mesh_desc desc = {.positions = {.data = corners, .count = 3}, .alpha_texture = alpha};
   if (alpha) desc.texcoords = (pn_span){.data = texcoords, .count = 3};
   pn_result result = pn_mesh_add(r->casters, &desc, &mesh);
   return result == PN_OK ? pn_instance_add(r->casters, mesh, identity, 0, NULL) : result;
@@ -81,8 +84,8 @@ static pn_result make_scene(rehearsal *r, const pni_technique_class *technique, 
                                       .fit = PN_FIT_VISIBLE,
                                       .map_width = 8};
   pn_result result = pn_casters_create(r->context, &r->casters);
-  if (result == PN_OK) result = add_triangle(r, 0);
-  if (result == PN_OK) result = add_triangle(r, r->alpha.id);
+  if (result == PN_OK) result = add_triangle(r, triangle, 0);
+  if (result == PN_OK) result = add_triangle(r, triangle, r->alpha.id);
   if (result == PN_OK) result = pn_receiver_create(r->context, &r->receiver);
   if (result == PN_OK) result = pn_receiver_set(r->receiver, &r->view);
   if (result == PN_OK) result = pn_light_create(r->context, &r->light);
@@ -116,6 +119,8 @@ static pn_result rehearse(pn_context *context, const pni_technique_class *techni
   pn_result result = pni_leave(context, make_textures(&r, like));
   describe_view(&r, like);
   if (result == PN_OK) result = make_scene(&r, technique, values);
+  if (result == PN_OK) result = draw_once(&r);
+  if (result == PN_OK) result = add_triangle(&r, ground, 0);
   if (result == PN_OK) result = draw_once(&r);
   end(&r);
   return result;

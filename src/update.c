@@ -1,4 +1,5 @@
 /* pn_maps_update: what casts, fitted and drawn. */
+#include <math.h>
 #include <string.h>
 
 #include "gl/device.h"
@@ -8,6 +9,7 @@
 #include "maps/maps.h"
 #include "maps/origin.h"
 #include "maps/range.h"
+#include "maps/trim.h"
 
 /* What PN_FIT_FRUSTUM looks at; for PN_FIT_VISIBLE too it comes first, because it costs nothing and may settle the
  * matter. */
@@ -25,20 +27,27 @@ static pn_result find_frusta(pn_light *light, pn_receiver *const *receivers, int
 }
 
 /* What PN_FIT_VISIBLE looks at: the surfaces themselves. */
-static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, int count) {
-  light->visible = pni_region_empty();
+typedef struct {
+  pni_patch_list patches;
+  pni_grid *grid;
+} surfaces;
+
+static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, int count, surfaces *seen) {
+  pni_gpu *gpu = pni_light_gpu(light);
   pn_result result = PN_OK;
   for (int i = 0; i < count && result == PN_OK; i++) {
     result = pni_receiver_open(receivers[i]);
     if (result != PN_OK) break;
-    result = pni_receiver_bounds(receivers[i], &light->frame, &light->visible);
+    result = pni_receiver_patches(receivers[i], &light->frame, &light->emission, &seen->patches);
     pni_receiver_close(receivers[i]);
   }
-  pni_clock_mark(pni_light_gpu(light), &light->clock, "fit");
+  if (result == PN_OK) result = pni_grid_make(gpu, &seen->patches, light->emission.extent, &seen->grid);
+  if (result == PN_OK) light->visible = seen->grid->region;
   return result;
 }
 
-static pni_fit_request fit_request(const pn_light *light, const pni_maps_want *want) {
+static pni_fit_request fit_request(const pn_light *light, const pni_maps_want *want, const surfaces *seen,
+                                   const pni_fit_kept *kept) {
   const pn_light_desc *d = &light->desc;
   return (pni_fit_request){.frame = &light->frame,
                            .emission = &light->emission,
@@ -48,12 +57,15 @@ static pni_fit_request fit_request(const pn_light *light, const pni_maps_want *w
                            .height = d->map_height,
                            .given = d->fit == PN_FIT_GIVEN ? d->fit_bounds : NULL,
                            .visible = light->has_visible ? &light->visible : NULL,
+                           .grid = seen ? seen->grid : NULL,
+                           .kept = kept,
                            .reach = want->reach,
                            .reach_width = want->reach_width};
 }
 
-static void fit_light(pn_light *light, const pn_casters *casters, const pni_maps_want *want) {
-  pni_fit_request request = fit_request(light, want);
+static void fit_light(pn_light *light, const pn_casters *casters, const pni_maps_want *want, const surfaces *seen,
+                      const pni_fit_kept *kept) {
+  pni_fit_request request = fit_request(light, want, seen, kept);
   pni_fit_maps(casters, light->groups, &request, &light->maps.fit);
   if (!light->maps.fit.clamped || light->warned_angle) return;
   light->warned_angle = true;
@@ -63,7 +75,7 @@ static void fit_light(pn_light *light, const pn_casters *casters, const pni_maps
 
 static pni_map_draw tile_draw(const pn_light *light, pn_casters *casters, const pni_maps_want *want, int tile) {
   const pni_fit_result *fit = &light->maps.fit;
-  pni_fit_request request = fit_request(light, want);
+  pni_fit_request request = fit_request(light, want, NULL, NULL);
   pni_map_draw draw = {.frame = &light->frame,
                        .casters = casters,
                        .groups = light->groups,
@@ -71,6 +83,7 @@ static pni_map_draw tile_draw(const pn_light *light, pn_casters *casters, const 
                        .w_far = fit->w_far,
                        .range = pni_fit_range(&request)};
   memcpy(draw.bounds, fit->tile[tile], sizeof draw.bounds);
+  if (fit->kept.has_floor) draw.floor = fit->kept.floor;
   if (want->focus > 0) draw.later = pni_fit_focus(&request, fit, tile, want->focus);
   return draw;
 }
@@ -108,14 +121,62 @@ static pn_result update_technique(pn_light *light) {
   return result;
 }
 
-static pn_result fit_to_view(pn_light *light, const pn_casters *casters, pn_receiver *const *visible, int visible_count,
+typedef struct {
+  pn_light *light;
+  pn_receiver *const *receivers;
+  int count;
+} view_list;
+
+/* As far down as nothing seen lies below it. */
+static pn_result lower_plane(void *user, double plane[3], bool *found) {
+  const view_list *views = user;
+  pn_result result = PN_OK;
+  for (int i = 0; i < 2; i++) plane[i] = (float)plane[i];
+  plane[2] = INFINITY;
+  for (int i = 0; i < views->count && result == PN_OK; i++) {
+    result = pni_receiver_open(views->receivers[i]);
+    if (result != PN_OK) break;
+    result = pni_receiver_offset(views->receivers[i], &views->light->frame, plane, &plane[2]);
+    pni_receiver_close(views->receivers[i]);
+  }
+  *found = plane[2] < INFINITY;
+  return result;
+}
+
+/* A fit to the surfaces, and to what of the casters counts then. */
+static pn_result fit_to_surfaces(pn_light *light, pn_casters *casters, const pni_maps_want *want,
+                                 pn_receiver *const *receivers, int count, const surfaces *seen) {
+  fit_light(light, casters, want, seen, NULL);
+  if (light->maps.fit.empty) return PN_OK;
+  pni_fit_result whole = light->maps.fit;
+  pni_fit_kept kept = {0};
+  view_list views = {light, receivers, count};
+  pni_fit_request fit = fit_request(light, want, seen, NULL);
+  pni_trim_request request = {.frame = &light->frame,
+                              .casters = casters,
+                              .groups = light->groups,
+                              .range = pni_fit_range(&fit),
+                              .fit = &whole,
+                              .grid = seen->grid,
+                              .lower = lower_plane,
+                              .user = &views};
+  pn_result result = pni_trim(pni_light_gpu(light), light->trim, &request, &kept);
+  if (result == PN_OK) fit_light(light, casters, want, seen, &kept);
+  return result;
+}
+
+static pn_result fit_to_view(pn_light *light, pn_casters *casters, pn_receiver *const *visible, int visible_count,
                              const pni_maps_want *want) {
   pn_result result = find_frusta(light, visible, visible_count);
   if (result != PN_OK) return result;
-  fit_light(light, casters, want);
+  fit_light(light, casters, want, NULL, NULL);
   if (light->desc.fit != PN_FIT_VISIBLE || !light->has_visible || light->maps.fit.empty) return PN_OK;
-  result = find_surfaces(light, visible, visible_count);
-  if (result == PN_OK) fit_light(light, casters, want);
+  surfaces seen = {{0}, NULL};
+  result = find_surfaces(light, visible, visible_count, &seen);
+  if (result == PN_OK) result = fit_to_surfaces(light, casters, want, visible, visible_count, &seen);
+  pni_clock_mark(pni_light_gpu(light), &light->clock, "fit");
+  pni_grid_free(pni_light_gpu(light), &seen.grid);
+  pni_patches_free(pni_light_gpu(light), &seen.patches);
   return result;
 }
 
@@ -229,6 +290,8 @@ pn_result pn_light_maps(const pn_light *light, pn_maps_info *out) {
       .t1 = (float)(b[3] + offset[1]),
       .w_near = (float)(maps->fit.w_near + offset[2]),
       .w_far = (float)(maps->fit.w_far + offset[2]),
+      .texel_s = maps->fit.empty ? 0 : maps->block.texel[0],
+      .texel_t = maps->fit.empty ? 0 : maps->block.texel[1],
       .gpu_memory = maps->depth.bytes + maps->range.bytes + maps->peel[0].bytes + maps->peel[1].bytes,
   };
   return PN_OK;

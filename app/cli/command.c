@@ -9,6 +9,8 @@ const struct command_row commands[COMMAND_COUNT] = {
     {"study", COMMAND_STUDY, 0, 1000, "NAME... | all",
      "the papers' experiments, as CSV, plots and a report (not in this version)"},
     {"bench", COMMAND_BENCH, 0, 1, "[SCENE] [options]", "stage times"},
+    {"motion", COMMAND_MOTION, 2, 1000, "SCENE SCENE... [options]",
+     "what shadows do from frame to frame, beside the reference"},
     {"view", COMMAND_VIEW, 0, 1, "[SCENE] [options]", "interactive window (not in this version)"},
     {"list", COMMAND_LIST, 0, 1, "[techniques|scenes|studies]",
      "what there is to choose from; --verbose: with parameters"},

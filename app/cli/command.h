@@ -11,7 +11,8 @@ enum command {
   COMMAND_VIEW = 16,
   COMMAND_LIST = 32,
   COMMAND_INFO = 64,
-  COMMAND_HELP = 128
+  COMMAND_HELP = 128,
+  COMMAND_MOTION = 256
 };
 
 struct command_row {
@@ -21,7 +22,7 @@ struct command_row {
   const char *arguments, *summary;
 };
 
-enum { COMMAND_COUNT = 8 };
+enum { COMMAND_COUNT = 9 };
 extern const struct command_row commands[COMMAND_COUNT];
 
 const struct command_row *command_find(const char *name); /* NULL: none */

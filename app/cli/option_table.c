@@ -11,9 +11,10 @@
 #include "files/image.h"
 
 enum {
-  DRAWING = COMMAND_RENDER | COMMAND_COMPARE | COMMAND_STUDY | COMMAND_BENCH | COMMAND_VIEW,
+  DRAWING = COMMAND_RENDER | COMMAND_COMPARE | COMMAND_STUDY | COMMAND_BENCH | COMMAND_VIEW | COMMAND_MOTION,
   EVERY = DRAWING | COMMAND_LIST | COMMAND_INFO | COMMAND_HELP,
-  FILES = COMMAND_RENDER | COMMAND_COMPARE | COMMAND_STUDY | COMMAND_BENCH
+  FILES = COMMAND_RENDER | COMMAND_COMPARE | COMMAND_STUDY | COMMAND_BENCH,
+  TRACING = COMMAND_COMPARE | COMMAND_STUDY | COMMAND_MOTION
 };
 
 /* The nearest technique, or the nearest parameter of a technique, to what a spec names wrongly; "" where nothing is
@@ -234,14 +235,15 @@ const struct option_row option_table[OPTION_COUNT] = {
                        "which GL device; penumbra info numbers them"},
     [OPTION_SETUP] = {"setup", 0, "FILE", DRAWING, read_setup,
                       "scene block of an earlier JSON; further options override it"},
-    [OPTION_REFERENCE_SAMPLES] = {"reference-samples", 0, "N", COMMAND_COMPARE | COMMAND_STUDY, read_reference_samples,
+    [OPTION_REFERENCE_SAMPLES] = {"reference-samples", 0, "N", TRACING, read_reference_samples,
                                   "rays per pixel of the reference, a square number up to 65536, default 1024"},
-    [OPTION_JSON] = {"json", 0, "FILE", FILES, read_json, "machine-readable result; - is standard output"},
+    [OPTION_JSON] = {"json", 0, "FILE", FILES | COMMAND_MOTION, read_json,
+                     "machine-readable result; - is standard output"},
     [OPTION_SAVE_DIR] = {"save-dir", 0, "DIR", COMMAND_RENDER | COMMAND_COMPARE | COMMAND_STUDY, read_save_dir,
                          "raw buffers as EXR files"},
     [OPTION_HTML] = {"html", 0, "FILE", COMMAND_COMPARE, read_html, "one self-contained page"},
-    [OPTION_NO_CACHE] = {"no-cache", 0, NULL, COMMAND_COMPARE | COMMAND_STUDY, read_flag, "trace the reference again"},
-    [OPTION_FRAMES] = {"frames", 0, "N", DRAWING & ~COMMAND_VIEW, read_frames,
+    [OPTION_NO_CACHE] = {"no-cache", 0, NULL, TRACING, read_flag, "trace the reference again"},
+    [OPTION_FRAMES] = {"frames", 0, "N", DRAWING & ~(COMMAND_VIEW | COMMAND_MOTION), read_frames,
                        "at most N timed frames, default 20, and at most 3 s a technique"},
     [OPTION_LIGHTS] = {"lights", 0, "N[,N...]", COMMAND_BENCH, read_lights,
                        "measure with N lights around the scene's own, default 1"},

@@ -8,6 +8,7 @@
 int command_render(const struct options *options);
 int command_compare(const struct options *options);
 int command_bench(const struct options *options);
+int command_motion(const struct options *options);
 int command_list(const struct options *options);
 int command_info(const struct options *options);
 int command_help(const struct options *options);

@@ -400,10 +400,11 @@ typedef enum { PN_LIGHT_RECTANGLE = 0, PN_LIGHT_SUN } pn_light_shape;
 /* Which casters the depth maps are fitted to. Accuracy depends on the map's resolution over what casts. Bounds snap,
  * so that a caster moving inside them does not make the others' shadows crawl. */
 typedef enum {
-  PN_FIT_CASTERS = 0, /* everything that casts */
-  /* what can shadow a visible receiver: reads a few numbers back from the receivers' depth, one synchronisation a
-   * call */
-  PN_FIT_VISIBLE,
+  /* what can shadow a visible receiver: reads a little back from the receivers' depth and from a small image of the
+   * casters, one synchronisation a call. Draw callbacks run once to three times more. Without receivers: everything
+   * that casts */
+  PN_FIT_VISIBLE = 0,
+  PN_FIT_CASTERS,     /* everything that casts */
   PN_FIT_FRUSTUM,     /* what can shadow a point in the receivers' view frusta: no read-back, less tight */
   PN_FIT_GIVEN        /* the box fit_bounds, taken literally: no snapping, no empty border */
 } pn_fit;
@@ -586,6 +587,7 @@ typedef struct {
   int width, height;  /* texels of each map */
   float s0, t0, s1, t1; /* bounds over all tiles in light map space (docs/space.md) */
   float w_near, w_far;
+  float texel_s, texel_t; /* width and height of the largest texel, in s and t */
   size_t gpu_memory;  /* bytes that depth maps and ranges hold, of an earlier update too where this one was empty */
 } pn_maps_info;
 PN_API pn_result pn_light_maps(const pn_light *light, pn_maps_info *out);

@@ -56,6 +56,7 @@ typedef struct {
   double range;               /* what lies wholly beyond that distance casts nothing; 0: no limit */
   uint32_t groups;
   bool without_host;       /* callbacks are not called: their time is pn_maps_update */
+  const float *floor; /* a, b, c: meshes are drawn where depth < a x + b y + c in window coordinates; NULL: all */
   const pni_texture *peel; /* the previous layer, or NULL */
   int layer;
 } pni_caster_draw;

@@ -8,8 +8,8 @@
 
 enum { DEFINES = 64 };
 
-static pni_program_key caster_program(bool alpha, bool peel, char defines[DEFINES]) {
-  snprintf(defines, DEFINES, "PN_ALPHA %d\nPN_PEEL %d\n", alpha, peel);
+static pni_program_key caster_program(bool alpha, bool peel, bool floor, char defines[DEFINES]) {
+  snprintf(defines, DEFINES, "PN_ALPHA %d\nPN_PEEL %d\nPN_FLOOR %d\n", alpha, peel, floor);
   return (pni_program_key){"casters/caster.vert.glsl", "casters/caster.frag.glsl", NULL, defines};
 }
 
@@ -98,15 +98,17 @@ typedef struct {
   bool clockwise; /* as the light sees it */
 } placed;
 
-static pn_result begin_mesh(pni_gpu *gpu, const pni_mesh_data *mesh, const placed *p, const pni_texture *peel) {
+static pn_result begin_mesh(pni_gpu *gpu, const pni_mesh_data *mesh, const placed *p, const pni_caster_draw *draw) {
+  const pni_texture *peel = draw->peel;
   char defines[DEFINES];
   bool alpha = mesh->alpha_texture != 0;
-  pni_program_key key = caster_program(alpha, peel != NULL, defines);
+  pni_program_key key = caster_program(alpha, peel != NULL, draw->floor != NULL, defines);
   pn_result result = pni_pass_program(gpu, &key);
   if (result != PN_OK) return result;
   float matrix[16];
   pni_matrix_to_floats(&p->clip_from_vertex, matrix);
   pni_set_matrix4(gpu, "pn_clip_from_vertex", matrix);
+  if (draw->floor) pni_set_floats(gpu, "pn_floor", draw->floor);
   if (peel) pni_set_texture(gpu, "pn_peel_map", peel);
   if (alpha) {
     pni_set_ints(gpu, "pn_alpha_channel", mesh->alpha_channel, 0, 0, 0);
@@ -118,10 +120,10 @@ static pn_result begin_mesh(pni_gpu *gpu, const pni_mesh_data *mesh, const place
   return PN_OK;
 }
 
-static pn_result draw_mesh(pni_gpu *gpu, const pni_mesh_data *mesh, const placed *p, const pni_texture *peel) {
+static pn_result draw_mesh(pni_gpu *gpu, const pni_mesh_data *mesh, const placed *p, const pni_caster_draw *draw) {
   size_t first = 0, count = next_run(mesh, &p->cull, &first);
   if (count == 0) return PN_OK;
-  pn_result result = begin_mesh(gpu, mesh, p, peel);
+  pn_result result = begin_mesh(gpu, mesh, p, draw);
   if (result != PN_OK) return result;
   size_t offset = mesh->own_indices.id ? 0 : mesh->indices.offset;
   for (; count > 0; count = next_run(mesh, &p->cull, &first)) {
@@ -167,7 +169,7 @@ static pn_result plan_meshes(pn_casters *casters, const pni_caster_draw *draw) {
   pn_result result = any[1] ? check_alpha_textures(casters, draw->groups) : PN_OK;
   for (int alpha = 0; alpha < 2 && result == PN_OK; alpha++) {
     char defines[DEFINES];
-    pni_program_key key = caster_program(alpha, draw->peel != NULL, defines);
+    pni_program_key key = caster_program(alpha, draw->peel != NULL, draw->floor != NULL, defines);
     if (any[alpha]) result = pni_pass_program(&casters->object.context->gpu, &key);
   }
   return result;
@@ -183,7 +185,7 @@ static pn_result draw_meshes(pn_casters *casters, const pni_caster_draw *draw) {
     placed p = {pni_matrix_multiply(&draw->clip_from_scene, &scene_from_vertex),
                 culling_of(draw, &instance->scene_from_object),
                 mesh->clockwise != mirrors(&instance->scene_from_object)};
-    pn_result result = draw_mesh(gpu, mesh, &p, draw->peel);
+    pn_result result = draw_mesh(gpu, mesh, &p, draw);
     if (result != PN_OK) return result;
   }
   return PN_OK;

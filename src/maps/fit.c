@@ -3,14 +3,16 @@
 #include <math.h>
 #include <string.h>
 
+#include "maps/texels.h"
+
 /* Casters nearer to a rectangle than this part of the farthest caster's distance are taken to be that far: the map's
  * depth has to reach both. Such a caster is then seen a little too far from the light; what it hides, (s_Q - s_R) /
  * (w_Q - w_R), hardly changes with w_Q that large. */
 static const double nearest_share = 1.0 / 256.0;
-/* Bounds are put on a grid of 32 to 64 steps across the map. */
-static const double snap_steps = 64;
-/* A map that opens wider than this is split. */
-static const double tile_opening = 120, tile_angle = 60; /* degrees */
+/* Under a sun w is put on a grid of at most as many steps. */
+enum { snap_steps = 64 };
+/* A map that opens wider than this along an axis is split there in three, the middle one at most as wide as that. */
+static const double tile_opening = 120, middle_opening = 60; /* degrees */
 
 typedef struct {
   const pni_fit_request *request;
@@ -48,14 +50,19 @@ static void look_at_distance(void *user, const double corners[8][3]) {
 
 /* ---- one box ----------------------------------------------------------------------------------------------------- */
 
+enum { HULL_MAX = 8 + 12 }; /* corners, and where edges are cut */
+
 typedef struct {
   double least[3], most[3];
+  double hull[HULL_MAX][3]; /* before it is sheared */
+  int count;
   bool any;
 } span3;
 
 static void span_add(span3 *span, const fitting *f, const double p[3]) {
   double m[3];
   pni_map_point(p, f->request->frame->projection, m);
+  memcpy(span->hull[span->count++], m, sizeof m);
   for (int i = 0; i < 2; i++) m[i] -= f->request->shear[i] * m[2];
   if (!is_parallel(f->request)) m[2] = fmin(m[2], 1 / f->z_floor);
   for (int i = 0; i < 3; i++) {
@@ -68,7 +75,7 @@ static void span_add(span3 *span, const fitting *f, const double p[3]) {
 /* The box's part before the light: corners, and where its edges meet a plane close before it. A box that lies nearer
  * than that altogether has its own plane, as close to its farthest corner in proportion. */
 static span3 box_span(const fitting *f, const double p[8][3]) {
-  span3 span = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, false};
+  span3 span = {.least = {INFINITY, INFINITY, INFINITY}, .most = {-INFINITY, -INFINITY, -INFINITY}};
   bool sun = is_parallel(f->request);
   double farthest = 0, plane = f->z_cut;
   for (int i = 0; i < 8; i++) farthest = fmax(farthest, p[i][2]);
@@ -109,13 +116,33 @@ static bool cut_to_visible(const fitting *f, span3 *span) {
   return true;
 }
 
+/* What lies in front of nothing that is seen is left out: by its box, and by what was drawn, where that tells so much
+ * of a box. */
+static bool cut_to_kept(const fitting *f, span3 *span) {
+  static const pni_caster_error exact = {0};
+  static const double cells_least = 4;
+  const pni_fit_request *r = f->request;
+  if (r->grid && !pni_grid_shadowed(r->grid, (const double(*)[3])span->hull, span->count, &exact)) return false;
+  const pni_fit_kept *kept = r->kept;
+  if (!kept) return true;
+  for (int i = 0; i < 2; i++)
+    if (span->most[i] - span->least[i] < cells_least * kept->cell[i]) return true;
+  for (int i = 0; i < 2; i++) {
+    double a = r->shear[i] * span->least[2], b = r->shear[i] * span->most[2];
+    span->least[i] = fmax(span->least[i], kept->bounds[i] - fmax(a, b));
+    span->most[i] = fmin(span->most[i], kept->bounds[i + 2] - fmin(a, b));
+    if (!(span->least[i] <= span->most[i])) return false;
+  }
+  return true;
+}
+
 static void add_box(void *user, const double corners[8][3]) {
   fitting *f = user;
   double p[8][3];
   to_light(f, corners, p);
   if (too_far(f, (const double(*)[3])p)) return;
   span3 span = box_span(f, (const double(*)[3])p);
-  if (!span.any || !cut_to_visible(f, &span)) return;
+  if (!span.any || !cut_to_visible(f, &span) || !cut_to_kept(f, &span)) return;
   for (int i = 0; i < 3; i++) {
     f->least[i] = fmin(f->least[i], span.least[i]);
     f->most[i] = fmax(f->most[i], span.most[i]);
@@ -140,20 +167,6 @@ static void fit_given(fitting *f) {
 
 /* ---- snapping ---------------------------------------------------------------------------------------------------- */
 
-/* The step for a range: a power of two, so that steps of neighbouring extents share their grid; chosen by the extent
- * after snapping, so that whatever fills the snapped bounds keeps them. */
-static double snap_step(double low, double high) {
-  double step = exp2(ceil(log2((high - low) / snap_steps)));
-  return ceil(high / step) - floor(low / step) > snap_steps ? 2 * step : step;
-}
-
-void pni_fit_snap(double *low, double *high) {
-  if (!(*high > *low)) return;
-  double step = snap_step(*low, *high);
-  *low = floor(*low / step) * step;
-  *high = ceil(*high / step) * step;
-}
-
 /* Distances snap to eighths of their power of two. */
 static double snap_distance(double z, bool up) {
   int exponent;
@@ -165,53 +178,53 @@ static double snap_distance(double z, bool up) {
 static void snap_depth(const fitting *f, pni_fit_result *out) {
   double w_low = f->least[2], w_high = f->most[2];
   if (is_parallel(f->request)) {
-    double extent = fmax(w_high - w_low, 1e-6 * (fabs(w_high) + fabs(w_low)) + 1e-30),
-           step = snap_step(w_high - extent, w_high);
-    out->w_near = (ceil(w_high / step) + 1) * step;
-    out->w_far = (floor(w_low / step) - 1) * step;
+    double extent = fmax(w_high - w_low, 1e-6 * (fabs(w_high) + fabs(w_low)) + 1e-30), margin = extent / snap_steps;
+    out->w_far = w_high - extent - margin;
+    out->w_near = w_high + margin;
+    pni_steps_around(&out->w_far, &out->w_near, snap_steps);
   } else {
     out->w_near = 1 / snap_distance(1 / w_high, false);
     out->w_far = 1 / snap_distance(1 / w_low, true);
   }
 }
 
-/* ---- borders and tiles ------------------------------------------------------------------------------------------- */
+/* ---- tiles ------------------------------------------------------------------------------------------------------- */
 
-/* One empty texel on each side, as far as the map has that many. */
-static void add_border(double *low, double *high, int texels) {
-  double border = texels > 2 ? (*high - *low) / (texels - 2) : 0;
-  *low -= border;
-  *high += border;
-}
+static const double degree = 0.017453292519943295;
 
-static int tiles_along(double low, double high) {
-  const double degree = 0.017453292519943295;
-  double opening = (atan(high) - atan(low)) / degree;
-  return opening > tile_opening ? (int)ceil(opening / tile_angle) : 1;
-}
+/* The maps along one axis: one, or three that meet in angles of their own, so that what moves does not move them. */
+typedef struct {
+  int count;
+  pni_axis axis[3];
+} row;
 
-/* Tiles open by equal angles. */
-static double tile_edge(double low, double high, int i, int count) {
-  if (i == 0) return low;
-  if (i == count) return high;
-  return tan(atan(low) + (atan(high) - atan(low)) * i / count);
+static row split_axis(const pni_fit_request *request, double low, double high, int texels) {
+  row r = {.count = 1, .axis[0] = {low, high, low, high}};
+  if (request->given) return r;
+  bool split = !is_parallel(request) && (atan(high) - atan(low)) / degree > tile_opening;
+  if (!split) {
+    r.axis[0] = pni_texels_around(low, high, texels);
+    return r;
+  }
+  double edge = pni_texels_half(tan(0.5 * middle_opening * degree), texels);
+  r.count = 3;
+  r.axis[0] = pni_texels_from(-edge, low, -edge, texels);
+  r.axis[1] = pni_texels_from(-edge, -edge, edge, texels);
+  r.axis[2] = pni_texels_from(edge, edge, high, texels);
+  return r;
 }
 
 static void make_tiles(const pni_fit_request *request, pni_fit_result *out) {
-  const double *b = out->bounds;
-  bool split = !is_parallel(request) && !request->given;
-  int columns = split ? tiles_along(b[0], b[2]) : 1, rows = split ? tiles_along(b[1], b[3]) : 1;
-  out->tiles = columns * rows;
+  row rows[2];
+  for (int i = 0; i < 2; i++) {
+    rows[i] = split_axis(request, out->bounds[i], out->bounds[i + 2], i ? request->height : request->width);
+    out->bounds[i] = rows[i].axis[0].low;
+    out->bounds[i + 2] = rows[i].axis[rows[i].count - 1].high;
+  }
+  out->tiles = rows[0].count * rows[1].count;
   for (int i = 0; i < out->tiles; i++) {
-    double *tile = out->tile[i];
-    int x = i % columns, y = i / columns;
-    tile[0] = tile_edge(b[0], b[2], x, columns);
-    tile[2] = tile_edge(b[0], b[2], x + 1, columns);
-    tile[1] = tile_edge(b[1], b[3], y, rows);
-    tile[3] = tile_edge(b[1], b[3], y + 1, rows);
-    if (request->given) continue;
-    add_border(&tile[0], &tile[2], request->width);
-    add_border(&tile[1], &tile[3], request->height);
+    const pni_axis *s = &rows[0].axis[i % rows[0].count], *t = &rows[1].axis[i / rows[0].count];
+    memcpy(out->tile[i], (const double[4]){s->from, t->from, s->to, t->to}, sizeof out->tile[i]);
   }
 }
 
@@ -284,6 +297,7 @@ void pni_fit_maps(const pn_casters *casters, uint32_t groups, const pni_fit_requ
     f.most[i] = -INFINITY;
   }
   memset(out, 0, sizeof *out);
+  if (request->kept) out->kept = *request->kept;
   pni_casters_each_box(casters, groups, look_at_distance, &f);
   f.z_cut = nearest_share * f.z_max;
   f.z_floor = fmax(request->near_distance, f.z_cut);
@@ -300,14 +314,11 @@ void pni_fit_maps(const pn_casters *casters, uint32_t groups, const pni_fit_requ
     out->bounds[i + 2] = f.most[i];
   }
   out->clamped = clamp_opening(&f, out);
-  for (int i = 0; i < 2; i++) {
-    widen_flat(&out->bounds[i], &out->bounds[i + 2], f.most[1 - i] - f.least[1 - i]);
-    if (!request->given) pni_fit_snap(&out->bounds[i], &out->bounds[i + 2]);
-  }
-  clamp_opening(&f, out); /* what snapping put beyond the limit is empty */
+  for (int i = 0; i < 2; i++) widen_flat(&out->bounds[i], &out->bounds[i + 2], f.most[1 - i] - f.least[1 - i]);
   snap_depth(&f, out);
   keep_finite(out);
   make_tiles(request, out);
+  clamp_opening(&f, out); /* what whole texels put beyond the limit is empty */
 }
 
 /* ---- the part that later layers hold ----------------------------------------------------------------------------- */

@@ -5,18 +5,27 @@
 
 #include "casters/casters.h"
 #include "gl/pass.h"
+#include "receiver/grid.h"
 #include "space/region.h"
 
 enum { PNI_TILES_MAX = 9 };
+
+/* Where casters lie that can shadow something seen (maps/trim.c), cell: how finely that was looked at. */
+typedef struct {
+  double bounds[4], cell[2];
+  bool has_floor;  /* there are casters on it or below, which are left out of the maps */
+  double floor[3]; /* w = [2] + [0] s + [1] t, below all that is seen */
+} pni_fit_kept;
 
 typedef struct {
   bool empty;       /* nothing casts here */
   bool clamped;     /* opened past 170 degrees */
   double bounds[4]; /* s0, t0, s1, t1 */
   double w_near, w_far;
-  double w_reach; /* with reach: no receiver lies below */
+  pni_fit_kept kept; /* of the request, cell 0 where it had none */
+  double w_reach;    /* with reach: no receiver lies below */
   int tiles;
-  double tile[PNI_TILES_MAX][4]; /* with a border of one texel, except for a fit that is given */
+  double tile[PNI_TILES_MAX][4]; /* with a border of one texel at least, except for a fit that is given */
 } pni_fit_result;
 
 typedef struct {
@@ -27,15 +36,13 @@ typedef struct {
   int width, height;
   const float *given;        /* PN_FIT_GIVEN's box, or NULL */
   const pni_region *visible; /* receivers that casters must be able to shadow, or NULL */
+  const pni_grid *grid;      /* the same in detail, or NULL */
+  const pni_fit_kept *kept;  /* other casters do not count, or NULL */
   /* Cover what the casters can darken, as far as the light's extent says, or reach_width map units, around them; of
    * that what visible receivers can ask for. */
   bool reach;
   double reach_width;
 } pni_fit_request;
-
-/* Widens a range to whole steps of a grid that depends on its extent alone, so that what moves a little does not move
- * the texels between. */
-void pni_fit_snap(double *low, double *high);
 
 /* Casters wholly beyond it cast nothing; 0: no limit. A sun has no distance. */
 double pni_fit_range(const pni_fit_request *request);

@@ -111,6 +111,7 @@ typedef struct {
   const pni_map_draw *draw;
   int first_layer;                             /* of the map */
   pni_matrix clip_from_scene, cull_from_scene; /* the second: of what later layers hold */
+  float floor[4];
 } drawing;
 
 static pni_image layer_of(const drawing *d, int layer) {
@@ -140,6 +141,7 @@ static pn_result draw_layer(const drawing *d, pni_image target, int layer, bool 
                           .groups = d->draw->groups,
                           .range = d->draw->range,
                           .without_host = d->draw->without_host,
+                          .floor = d->draw->floor ? d->floor : NULL,
                           .peel = peel,
                           .layer = layer};
   pni_matrix light_from_scene = pni_light_from_scene(d->draw->frame);
@@ -188,15 +190,29 @@ static pn_result plan_layers(pni_gpu *gpu, const pni_maps *maps, const pni_map_d
   return draw_layers(&(drawing){.gpu = gpu, .maps = maps, .draw = draw});
 }
 
+/* The floor as depth over window coordinates, (x, y, 1): raised by what a caster in it may be off. In a sheared map s =
+ * s' + x_L w, so that w (1 - a x_L - b y_L) = a s' + b t' + c. */
+static void place_floor(const pni_light_block *b, const pni_map_block *map, const pni_map_draw *draw, float out[4]) {
+  const double *f = draw->floor;
+  double upright = 1 - f[0] * draw->shear[0] - f[1] * draw->shear[1];
+  double w = f[2] + b->w_error, per_depth = map->w_of_depth[1];
+  for (int i = 0; i < 2; i++) {
+    w += f[i] * draw->bounds[i] + fabs(f[i]) * b->raster_error / map->density[i];
+    out[i] = (float)(f[i] / map->density[i] / upright / per_depth);
+  }
+  out[2] = (float)((w / upright - map->w_of_depth[0]) / per_depth);
+}
+
 pn_result pni_maps_add(pni_gpu *gpu, pni_maps *maps, const pni_map_draw *draw) {
   if (gpu->plan.on) return plan_layers(gpu, maps, draw);
   int index = (int)maps->block.map_count;
-  drawing d = {gpu, maps, draw, index * pni_want_layers(&maps->want), {{0}}, {{0}}};
+  drawing d = {gpu, maps, draw, index * pni_want_layers(&maps->want), {{0}}, {{0}}, {0}};
   pni_matrix clip = pni_clip_from_light(draw->frame->projection, draw->bounds, draw->w_near, draw->w_far, draw->shear);
   pni_matrix light = pni_light_from_scene(draw->frame);
   d.clip_from_scene = pni_matrix_multiply(&clip, &light);
   d.cull_from_scene = clip_part(&d.clip_from_scene, &draw->later, maps->depth.width, maps->depth.height);
   maps->later[index] = draw->later;
   add_block(gpu, maps, draw);
+  if (draw->floor) place_floor(&maps->block, &maps->block.maps[index], draw, d.floor);
   return draw_layers(&d);
 }

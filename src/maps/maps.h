@@ -17,9 +17,10 @@ typedef struct {
   pn_casters *casters;
   uint32_t groups;
   double bounds[4], w_near, w_far, shear[2];
-  double range;      /* of the light; 0: no limit */
-  pni_part later;    /* with want.focus: the texels that layers past the first are drawn over */
-  bool without_host; /* callbacks are not called: their time is pn_maps_update */
+  double range;        /* of the light; 0: no limit */
+  const double *floor; /* casters on it or below are left out (pni_fit_kept); NULL: none */
+  pni_part later;      /* with want.focus: the texels that layers past the first are drawn over */
+  bool without_host;   /* callbacks are not called: their time is pn_maps_update */
 } pni_map_draw;
 pn_result pni_maps_add(pni_gpu *gpu, pni_maps *maps, const pni_map_draw *draw);
 

@@ -25,3 +25,21 @@ bool pn_receives(ivec2 pixel) {
 }
 
 float pn_depth_error(float depth) { return max(pn_quantum.x, pn_quantum.y * abs(depth)); }
+
+// Rasterisers are farther off where they cut huge triangles: thin pieces are left along an edge, and single pixels of
+// them lie beside a surface that is straight around them. How far a pixel's
+// depth lies beside a straight line through the two on either side of it; 0 where it lies on it, or there is none.
+float pn_stray_along(ivec2 pixel, ivec2 axis, float depth, float error) {
+  if (!pn_view_has(pixel - 2 * axis) || !pn_view_has(pixel + 2 * axis)) return 0.0;
+  float before = pn_depth_at(pixel - axis), after = pn_depth_at(pixel + axis);
+  float beside = abs(depth - 0.5 * (before + after)), slope = 0.5 * (after - before);
+  if (beside <= 2.0 * error) return 0.0;
+  bool straight = abs(before - pn_depth_at(pixel - 2 * axis) - slope) <= 4.0 * error &&
+                  abs(pn_depth_at(pixel + 2 * axis) - after - slope) <= 4.0 * error;
+  return straight ? beside : 0.0;
+}
+
+float pn_stray(ivec2 pixel, float depth) {
+  float error = pn_depth_error(depth);
+  return max(pn_stray_along(pixel, ivec2(1, 0), depth, error), pn_stray_along(pixel, ivec2(0, 1), depth, error));
+}

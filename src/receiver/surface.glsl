@@ -25,20 +25,28 @@ vec3 pn_point(ivec2 pixel, float depth) {
   return h.xyz / h.w;
 }
 
-void pn_position(ivec2 pixel, float depth, out vec3 p, out vec3 error) {
+// A point and how far it may be off, with a depth that strays by so much beside its own error.
+void pn_position_of(ivec2 pixel, float depth, float stray, out vec3 p, out vec3 error) {
   vec4 v = vec4(vec2(pixel) + 0.5, depth, 1.0);
   vec4 h = pn_light_from_pixel * v;
   p = h.xyz / h.w;
   // Depth's own error moves the point along the ray. A float matrix moves it anywhere: each term of a row is rounded
   // as an entry, as a product and in three sums, and a quotient may be off by 2.5 units in the last place: five
   // roundings of 2^-24 each time.
-  vec4 along = pn_light_from_pixel[2];
+  vec4 along = pn_light_from_pixel[2], aside = pn_light_from_pixel[0];
+  vec3 per_depth = (along.xyz - p * along.w) / h.w, per_pixel = (aside.xyz - p * aside.w) / h.w;
   vec4 a = abs(v);
   vec4 sum = abs(pn_light_from_pixel[0]) * a.x + abs(pn_light_from_pixel[1]) * a.y + abs(pn_light_from_pixel[2]) * a.z +
              abs(pn_light_from_pixel[3]);
-  error = abs((along.xyz - p * along.w) / h.w) * pn_depth_error(depth) +
+  // What stands out of a straight surface by much less than a pixel's width is an error; by more, it may be there.
+  if (stray * length(per_depth) > 0.125 * length(per_pixel)) stray = 0.0;
+  error = abs(per_depth) * (pn_depth_error(depth) + stray) +
           3e-7 * ((sum.xyz + abs(p) * sum.w) / abs(h.w) + abs(p)) +
           pn_lost.xyz + vec3(0.0, 0.0, pn_lost.w * abs(p.z));
+}
+
+void pn_position(ivec2 pixel, float depth, out vec3 p, out vec3 error) {
+  pn_position_of(pixel, depth, pn_stray(pixel, depth), p, error);
 }
 
 #if !PN_NORMALS

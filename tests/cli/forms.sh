@@ -4,7 +4,7 @@ header=$(cd "$(dirname "$0")/../../include/penumbra" && pwd)/penumbra.h
 . "$(dirname "$0")/common.sh"
 small="--size 48x36 --map 32 --frames 1 -t hard"
 
-for command in render compare study bench view list info help; do
+for command in render compare motion study bench view list info help; do
   for form in -h --help; do
     run 0 $command $form
     grep -q "^penumbra $command" out || fail "help of $command"

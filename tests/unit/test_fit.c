@@ -1,6 +1,6 @@
 /* Fitting: what the maps of a light cover. */
 #include "gl_context.h"
-#include "maps/fit.h"
+#include "maps/trim.h"
 #include "vector.h"
 
 #include <float.h>
@@ -82,20 +82,20 @@ static extent3 exact_extent(const pn_casters *c, const pni_frame *f, const doubl
   return e;
 }
 
-/* Steps are a power of two of at most 2/64 of the extent, and each end moves by at most one of them: 4/64. A border
- * texel on each side then makes it N / (N - 2). Distances may move by an eighth of their power of two and a little:
- * w_near by 1/4 at most (7/16 below 8/16 is the next step of the smaller power: 1/8; rounding up never does more than
- * 1/8), so 1/7 of w; twice that is allowed. */
+/* A texel is 2^(k/4): at most 2^(1/4) times as wide as it would have to be, were ends in between allowed, and the map
+ * at most four of 64 texels wider for that; so (1 + 4/60) 2^(1/4) as wide in all. Bounds are at most a texel from what
+ * they hold, and there is a texel that is empty beside them. */
 static void assert_tight(const pni_fit_result *r, const extent3 *e, int size) {
   double least[2] = {e->least.x, e->least.y}, most[2] = {e->most.x, e->most.y};
   for (int k = 0; k < 2; k++) {
-    double extent = most[k] - least[k], slack = 4.0 / 64 * extent + 1e-12;
-    assert_true(r->bounds[k] <= least[k] && r->bounds[2 + k] >= most[k]);
-    assert_true(r->bounds[2 + k] - r->bounds[k] <= extent + slack);
-    /* Not even the snapped bounds reach into the outermost texels. */
-    double texel = (r->tile[0][2 + k] - r->tile[0][k]) / size;
-    assert_true(fabs(r->tile[0][k] + texel - r->bounds[k]) < 1e-9 * extent + 1e-12);
-    assert_true(fabs(r->tile[0][2 + k] - texel - r->bounds[2 + k]) < 1e-9 * extent + 1e-12);
+    double texel = (r->tile[0][2 + k] - r->tile[0][k]) / size, quarters = 4 * log2(texel), slack = 1e-9 * texel;
+    assert_true(fabs(quarters - round(quarters)) < 1e-6);
+    assert_true(texel <= fmax((most[k] - least[k]) / (size - 6) * 1.1893, 1e-9));
+    assert_true(r->bounds[k] <= least[k] + slack && r->bounds[k] >= least[k] - texel - slack);
+    assert_true(r->bounds[2 + k] >= most[k] - slack && r->bounds[2 + k] <= most[k] + texel + slack);
+    assert_true(r->tile[0][k] <= r->bounds[k] - texel + slack && r->tile[0][2 + k] >= r->bounds[2 + k] + texel - slack);
+    double steps = r->tile[0][k] / texel / (size / 32); /* blocks of a pyramid, too, lie on a grid of their own */
+    assert_true(fabs(steps - round(steps)) < 1e-6);
   }
 }
 
@@ -193,6 +193,37 @@ static void test_snapping_is_stable(void **state) {
     assert_memory_equal(first.bounds, second.bounds, sizeof first.bounds);
     assert_true(first.w_near == second.w_near && first.w_far == second.w_far);
   }
+}
+
+/* As long as texels keep their size, they keep their places: ends that move put whole texels to the map, in blocks. */
+static void test_texels_stay(void **state) {
+  (void)state;
+  uint64_t seed = 14;
+  int same = 0;
+  for (int i = 0; i < 4000; i++) {
+    static pn_casters c;
+    pni_frame f = frame_along_z(i & 1);
+    pni_fit_request request = request_of(&f, 100);
+    vec half = v3(random_in(&seed, 0.1, 2), random_in(&seed, 0.1, 2), 0.3), at = random_point(&seed, 1);
+    pni_fit_result r[2];
+    for (int step = 0; step < 2; step++) {
+      memset(&c, 0, sizeof c);
+      at.z = 5;
+      put_box(&c, 0, at, half);
+      r[step] = fit(&c, &request);
+      at.x += random_in(&seed, -0.3, 0.3) * half.x;
+      half.y *= random_in(&seed, 0.9, 1.1);
+    }
+    for (int k = 0; k < 2; k++) {
+      double texel[2];
+      for (int step = 0; step < 2; step++) texel[step] = (r[step].tile[0][2 + k] - r[step].tile[0][k]) / 100;
+      if (fabs(texel[0] / texel[1] - 1) > 1e-9) continue;
+      same++;
+      double moved = (r[1].tile[0][k] - r[0].tile[0][k]) / texel[0];
+      assert_true(fabs(moved - 2 * round(moved / 2)) < 1e-6); /* 100 / 32: the power of two below is 2 */
+    }
+  }
+  assert_true(same > 3000);
 }
 
 /* ---- the light's plane ---- */
@@ -397,6 +428,106 @@ static void test_visible_keeps(void **state) {
   check_visible(true, 9, true);
 }
 
+/* ---- what lies in front of nothing ---- */
+
+static double plane_at(const double plane[3], double s, double t) { return plane[2] + plane[0] * s + plane[1] * t; }
+
+/* Patches of a plane with something standing on it here and there. */
+static void random_view(pni_patch_list *list, pni_patch *patches, int count, const double plane[3], uint64_t *seed) {
+  *list = (pni_patch_list){patches, count, count};
+  for (int i = 0; i < count; i++) {
+    pni_patch *p = &patches[i];
+    double size = random_in(seed, 0.01, 0.2), above = i % 5 == 0 ? random_in(seed, 0.05, 0.3) : 0;
+    *p = (pni_patch){.slope = {plane[0], plane[1]}, .offset = plane[2] + above, .error = 1e-7};
+    p->least[2] = INFINITY;
+    p->most[2] = -INFINITY;
+    for (int k = 0; k < 2; k++) {
+      p->least[k] = random_in(seed, -1, 1);
+      p->most[k] = p->least[k] + size;
+    }
+    for (int c = 0; c < 4; c++) {
+      double w = plane_at(plane, c & 1 ? p->most[0] : p->least[0], c & 2 ? p->most[1] : p->least[1]) + above;
+      p->least[2] = fmin(p->least[2], w);
+      p->most[2] = fmax(p->most[2], w);
+    }
+  }
+}
+
+/* Against the definition: a caster takes light from a point of a patch where it lies nearer, and within the window. */
+static bool takes_light(const pni_patch *p, const double extent[2], const double q[3], uint64_t *seed) {
+  for (int i = 0; i < 40; i++) {
+    double s = i < 4 ? (i & 1 ? p->most[0] : p->least[0]) : random_in(seed, p->least[0], p->most[0]);
+    double t = i < 4 ? (i & 2 ? p->most[1] : p->least[1]) : random_in(seed, p->least[1], p->most[1]);
+    if (i == 4) s = fmin(fmax(q[0], p->least[0]), p->most[0]), t = fmin(fmax(q[1], p->least[1]), p->most[1]);
+    double dw = q[2] - (p->offset + p->slope[0] * s + p->slope[1] * t);
+    if (dw > 1e-6 && fabs(q[0] - s) <= extent[0] * dw && fabs(q[1] - t) <= extent[1] * dw) return true;
+  }
+  return false;
+}
+
+static void test_grid_keeps(void **state) {
+  (void)state;
+  static pni_patch patches[300];
+  static pni_gpu gpu;
+  static const pni_caster_error exact = {0};
+  uint64_t seed = 15;
+  int hits = 0, lost = 0;
+  for (int round = 0; round < 30; round++) {
+    double plane[3] = {random_in(&seed, -0.8, 0.8), random_in(&seed, -0.8, 0.8), 1}, extent[2] = {0.3, 0.5};
+    pni_patch_list list;
+    pni_grid *grid;
+    random_view(&list, patches, 300, plane, &seed);
+    assert_int_equal(pni_grid_make(&gpu, &list, extent, &grid), PN_OK);
+    for (int i = 0; i < 300; i++) {
+      double q[1][3] = {{random_in(&seed, -1.5, 1.5), random_in(&seed, -1.5, 1.5), 0}};
+      q[0][2] = plane_at(plane, q[0][0], q[0][1]) + random_in(&seed, -0.2, 0.4);
+      bool any = false;
+      for (int k = 0; k < list.count && !any; k++) any = takes_light(&patches[k], extent, q[0], &seed);
+      bool told = pni_grid_shadowed(grid, (const double(*)[3])q, 1, &exact);
+      assert_true(told || !any);
+      hits += any;
+      /* the lemma: on a plane that nothing seen is below, nothing is shadowed */
+      q[0][2] = plane_at(plane, q[0][0], q[0][1]) - random_in(&seed, 0, 0.1);
+      lost += pni_grid_shadowed(grid, (const double(*)[3])q, 1, &exact);
+    }
+    double found[3];
+    assert_true(pni_grid_plane(grid, found));
+    for (int k = 0; k < 3; k++) assert_true(fabs(found[k] - plane[k]) < 1e-6);
+    pni_grid_free(&gpu, &grid);
+  }
+  assert_true(hits > 1000 && lost == 0);
+}
+
+/* An image of a ground with a box on it: the box is found, to a sample on each side; the ground alone is nothing. */
+static void test_trim(void **state) {
+  (void)state;
+  enum { SIZE = 128 };
+  static pni_patch patches[200];
+  static pni_gpu gpu;
+  static float w[SIZE * SIZE];
+  const double plane[3] = {0.4, -0.3, 2}, extent[2] = {0.1, 0.1}, box[4] = {-0.31, 0.12, 0.05, 0.44};
+  uint64_t seed = 16;
+  pni_patch_list list;
+  pni_grid *grid;
+  random_view(&list, patches, 200, plane, &seed);
+  assert_int_equal(pni_grid_make(&gpu, &list, extent, &grid), PN_OK);
+  for (int with_box = 0; with_box < 2; with_box++) {
+    pni_trim_image image = {.w = w, .size = SIZE, .bounds = {-1, -1, 1, 1}, .error = {1e-6, {1e-6, 1e-6}}};
+    for (int k = 0; k < SIZE * SIZE; k++) {
+      double s = -1 + (k % SIZE + 0.5) * 2 / SIZE, t = -1 + (k / SIZE + 0.5) * 2 / SIZE;
+      bool inside = with_box && s >= box[0] && s <= box[2] && t >= box[1] && t <= box[3];
+      w[k] = (float)(plane_at(plane, s, t) + (inside ? 0.5 : 0));
+    }
+    double left[4];
+    assert_int_equal(pni_trim_bounds(&image, grid, left), with_box);
+    for (int k = 0; k < 2 && with_box; k++) {
+      assert_true(left[k] <= box[k] && left[k] >= box[k] - 2 * 2.0 / SIZE);
+      assert_true(left[2 + k] >= box[2 + k] && left[2 + k] <= box[2 + k] + 2 * 2.0 / SIZE);
+    }
+  }
+  pni_grid_free(&gpu, &grid);
+}
+
 static void test_visible_cuts(void **state) {
   (void)state;
   static pn_casters c;
@@ -517,6 +648,9 @@ int main(void) {
       cmocka_unit_test(test_clamped_means_lost),
       cmocka_unit_test(test_visible_keeps),
       cmocka_unit_test(test_visible_cuts),
+      cmocka_unit_test(test_texels_stay),
+      cmocka_unit_test(test_grid_keeps),
+      cmocka_unit_test(test_trim),
       cmocka_unit_test(test_frustum),
       cmocka_unit_test(test_flat),
       cmocka_unit_test(test_given),

@@ -88,8 +88,8 @@ static void add_technique(const pni_technique_class *c) {
 
 static void add_others(void) {
   char defines[128];
-  for (int i = 0; i < 4; i++) {
-    snprintf(defines, sizeof defines, "PN_ALPHA %d\nPN_PEEL %d\n", i & 1, i >> 1);
+  for (int i = 0; i < 8; i++) {
+    snprintf(defines, sizeof defines, "PN_ALPHA %d\nPN_PEEL %d\nPN_FLOOR %d\n", i & 1, i >> 1 & 1, i >> 2);
     add_key("casters/caster.vert.glsl", "casters/caster.frag.glsl", "", defines);
   }
   for (int i = 0; i < 8; i++) {
@@ -99,6 +99,11 @@ static void add_others(void) {
   add_key(screen, "receiver/bounds.frag.glsl", "", "PN_FIRST 0\nPN_MASK 0\n");
   add_key(screen, "receiver/bounds.frag.glsl", "", "PN_FIRST 1\nPN_MASK 0\n");
   add_key(screen, "receiver/bounds.frag.glsl", "", "PN_FIRST 1\nPN_MASK 1\n");
+  for (int i = 0; i < 4; i++) {
+    snprintf(defines, sizeof defines, "PN_MASK %d\nPN_GIVEN %d\n", i & 1, i >> 1);
+    add_key(screen, "receiver/patches.frag.glsl", "", defines);
+  }
+  add_key(screen, "maps/trim.frag.glsl", "", "");
   add_key(screen, "receiver/copy.frag.glsl", "", "");
   add_key(screen, "receiver/planes.frag.glsl", "", "");
   for (int i = 0; i < 10; i++) {

@@ -81,7 +81,7 @@ static void test_square(void **state) {
   static const char *const specs[] = {"smoothies", "smoothies:geometry=edges"};
   for (int i = 0; i < 2; i++)
     for (int sun = 0; sun < 2; sun++)
-      for (int fit = PN_FIT_CASTERS; fit <= PN_FIT_FRUSTUM; fit++) {
+      for (int fit = PN_FIT_VISIBLE; fit <= PN_FIT_FRUSTUM; fit++) {
         check_square(&(square_case){sun, 0.3, 0.2, (pn_fit)fit, specs[i]});
         check_square(&(square_case){sun, sun ? 0.35 : 0.5, sun ? 0.35 : 0.5, (pn_fit)fit, specs[i]});
       }

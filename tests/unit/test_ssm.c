@@ -285,6 +285,7 @@ static void tiles_are_counted_once(void **state) {
   soup_patch(&c.casters, v3(0, 2.5, 0), v3(6, 0, 0), v3(0, 0, 6)); /* opens to 152 degrees */
   scene_open(&c, 2.2);
   pn_light_desc light = light_above(64);
+  light.fit = PN_FIT_CASTERS;
   for (int merge = 0; merge < 2; merge++) {
     float *visibility = stage_visibility(&c.s, &light, merge ? "ssm:layers=1" : "ssm:layers=1,merge=0");
     pn_maps_info info;

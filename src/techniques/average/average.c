@@ -117,10 +117,12 @@ static pni_fit_request fit_point(const pni_job *job, const double shear[2], pni_
                              .width = job->desc->map_width,
                              .height = job->desc->map_height,
                              .given = job->desc->fit == PN_FIT_GIVEN ? job->desc->fit_bounds : NULL,
-                             .visible = job->visible};
+                             .visible = job->visible,
+                             .kept = job->maps->fit.kept.cell[0] > 0 ? &job->maps->fit.kept : NULL};
   pni_fit_maps(job->casters, job->groups, &request, fit);
   if (!fit->empty) return request;
-  request.visible = NULL; /* from this point no caster shadows anything seen: any map will do */
+  request.visible = NULL;
+  request.kept = NULL; /* from this point no caster shadows anything seen: any map will do */
   pni_fit_maps(job->casters, job->groups, &request, fit);
   return request;
 }
@@ -137,6 +139,7 @@ static pn_result draw_map(const pni_job *job, pni_maps *batch, const double shea
                        .w_far = fit.w_far,
                        .shear = {shear[0], shear[1]},
                        .range = pni_fit_range(&request),
+                       .floor = fit.kept.has_floor ? fit.kept.floor : NULL,
                        .without_host = job->receiver != NULL};
   if (fit.tiles == 1)
     for (int i = 0; i < 4; i++) draw.bounds[i] = fit.tile[0][i];

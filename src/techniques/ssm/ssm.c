@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "gl/host.h"
+#include "maps/texels.h"
 
 enum { PRESET, SIDES, ACCUMULATE, EXTENTS, MERGE, SIZE, LAYERS, COUNT };
 enum { SIDES_BOTH, SIDES_FRONT, SIDES_BACK };
@@ -95,7 +96,7 @@ static bool soft_shadow_map(const void *data, pn_soft_shadow_map *out) {
 /* ---- where the soft shadow map lies ------------------------------------------------------------------------------ */
 
 /* Casters grown by the penumbra, as far as receivers are seen there. False: nothing to shadow. */
-static bool place_axis(const pni_job *job, const pni_region *seen, int i, double *low, double *high) {
+static bool place_axis(const pni_job *job, const pni_region *seen, int i, int texels, double *low, double *high) {
   const pni_fit_result *fit = &job->maps->fit;
   double reach = pni_penumbra_extent(job->emission->extent[i], fit->w_near, seen->least[2]);
   *low = fmax(fit->bounds[i] - reach, seen->least[i]);
@@ -106,7 +107,9 @@ static bool place_axis(const pni_job *job, const pni_region *seen, int i, double
     *low -= least;
     *high += least;
   }
-  pni_fit_snap(low, high);
+  pni_axis axis = pni_texels_around(*low, *high, texels);
+  *low = axis.from;
+  *high = axis.to;
   return true;
 }
 
@@ -123,7 +126,7 @@ static bool place(const pni_job *job, const pni_region *seen, pni_seen_want *out
                          .height = size ? size : job->desc->map_height,
                          .layers = (int)job->values[LAYERS]};
   for (int i = 0; i < 2 && !job->gpu->plan.on; i++)
-    if (!place_axis(job, seen, i, &out->bounds[i], &out->bounds[i + 2])) return false;
+    if (!place_axis(job, seen, i, i ? out->height : out->width, &out->bounds[i], &out->bounds[i + 2])) return false;
   /* Receivers in a plane that faces the light have no extent in w; the depth test needs one that floats resolve. */
   double span = fmax(seen->most[2] - seen->least[2], 1e-3 * fabs(seen->most[2]) + 1e-12);
   out->w_least = seen->least[2] - 0.1 * span;
