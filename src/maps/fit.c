@@ -20,6 +20,7 @@ typedef struct {
   double z_max;   /* first look: the farthest caster */
   double z_cut;   /* rectangle: boxes are cut off here, close before the light */
   double z_floor; /* rectangle: nearer casters are taken to be here */
+  double w_most;  /* rectangle: what maps store of those, z_floor put outwards */
   bool any, clamped;
   double least[3], most[3]; /* of the casters that count, (s', t', w) */
 } fitting;
@@ -33,6 +34,13 @@ static void to_light(const fitting *f, const double corners[8][3], double out[8]
 /* ---- distances --------------------------------------------------------------------------------------------------- */
 
 double pni_fit_range(const pni_fit_request *request) { return is_parallel(request) ? 0 : request->range; }
+
+/* Distances snap to eighths of their power of two. */
+static double snap_distance(double z, bool up) {
+  int exponent;
+  double mantissa = frexp(z, &exponent) * 16;
+  return ldexp((up ? floor(mantissa) + 1 : ceil(mantissa) - 1) / 16, exponent);
+}
 
 static bool too_far(const fitting *f, const double p[8][3]) {
   double range = pni_fit_range(f->request), least = INFINITY;
@@ -64,11 +72,13 @@ static void span_add(span3 *span, const fitting *f, const double p[3]) {
   pni_map_point(p, f->request->frame->projection, m);
   memcpy(span->hull[span->count++], m, sizeof m);
   for (int i = 0; i < 2; i++) m[i] -= f->request->shear[i] * m[2];
-  if (!is_parallel(f->request)) m[2] = fmin(m[2], 1 / f->z_floor);
+  bool too_near = !is_parallel(f->request) && m[2] >= 1 / f->z_floor;
+  if (too_near) m[2] = 1 / f->z_floor;
   for (int i = 0; i < 3; i++) {
     span->least[i] = fmin(span->least[i], m[i]);
     span->most[i] = fmax(span->most[i], m[i]);
   }
+  if (too_near) span->most[2] = f->w_most;
   span->any = true;
 }
 
@@ -167,13 +177,6 @@ static void fit_given(fitting *f) {
 
 /* ---- snapping ---------------------------------------------------------------------------------------------------- */
 
-/* Distances snap to eighths of their power of two. */
-static double snap_distance(double z, bool up) {
-  int exponent;
-  double mantissa = frexp(z, &exponent) * 16;
-  return ldexp((up ? floor(mantissa) + 1 : ceil(mantissa) - 1) / 16, exponent);
-}
-
 /* w_near above, w_far strictly below every caster. */
 static void snap_depth(const fitting *f, pni_fit_result *out) {
   double w_low = f->least[2], w_high = f->most[2];
@@ -183,7 +186,7 @@ static void snap_depth(const fitting *f, pni_fit_result *out) {
     out->w_near = w_high + margin;
     pni_steps_around(&out->w_far, &out->w_near, snap_steps);
   } else {
-    out->w_near = 1 / snap_distance(1 / w_high, false);
+    out->w_near = fmin(1 / snap_distance(1 / w_high, false), f->w_most);
     out->w_far = 1 / snap_distance(1 / w_low, true);
   }
 }
@@ -301,6 +304,7 @@ void pni_fit_maps(const pn_casters *casters, uint32_t groups, const pni_fit_requ
   pni_casters_each_box(casters, groups, look_at_distance, &f);
   f.z_cut = nearest_share * f.z_max;
   f.z_floor = fmax(request->near_distance, f.z_cut);
+  f.w_most = 1 / snap_distance(f.z_floor, false);
   pni_casters_each_box(casters, groups, add_box, &f);
   out->empty = !f.any;
   if (out->empty) return;
