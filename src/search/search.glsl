@@ -3,6 +3,7 @@
 // pn_cover_and_ask, pn_is_full, and the macros
 //   PN_PRIMITIVE  what a texel stands for, see primitive.glsl
 //   PN_GAPS       patches are widened to meet their left and lower neighbours
+//   PN_OVERLAPS   1: what two primitives cover both counts once, so they may overlap
 //   PN_EDGES      quads that lack a corner are covered by the parts that belong to the others
 //   PN_DESCENT    1: adaptive descent of the range pyramid; 0: every texel of the window, or of a coarser level past
 //                 the cap
@@ -470,6 +471,13 @@ void pn_visit(int light, highp sampler2DArray range, pn_ShadedPoint r, int map, 
 #define PN_VISIT pn_visit(light, range, r, map, layer, merge, walk, c);
 
 #if PN_PRIMITIVE != PN_PATCH
+// A merged block's edges, each at the mean of two corners, do not meet the smaller primitives beside it, whose edges
+// lie on both sides of that mean. Out to the corners they do.
+void pn_spread(inout pn_Quad q) {
+  q.low = vec2(min(min(q.x.x, q.x.y), min(q.x.z, q.x.w)), min(min(q.y.x, q.y.y), min(q.y.z, q.y.w)));
+  q.high = vec2(max(max(q.x.x, q.x.y), max(q.x.z, q.x.w)), max(max(q.y.x, q.y.y), max(q.y.z, q.y.w)));
+}
+
 // Covers the primitive that a visit left, or the next part of it; true where that is to be done exactly, row by row.
 bool pn_take_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, inout pn_Walk walk,
                   inout pn_Cover c, out pn_Quad quad) {
@@ -479,6 +487,9 @@ bool pn_take_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int ma
   if (!quad.some) return false;
 #if PN_PRIMITIVE == PN_QUAD_EXACT
   if (quad.whole && walk.exact) return true;
+#endif
+#if PN_OVERLAPS
+  if (quad.whole && !walk.exact) pn_spread(quad);
 #endif
   pn_cover_rectangle(c, quad.low, quad.high);
   pn_search_done.z += 1.0;

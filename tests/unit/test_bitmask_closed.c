@@ -93,10 +93,12 @@ static void test_watertight(void **state) {
                                        "bitmask:samples=16j,primitive=quad-exact,merge=1",
                                        "bitmask:samples=16j,primitive=quad,maps=front,merge=1"};
   static const double slopes[] = {0, 0.05, 0.3, 0.5};
+  /* 63 and 90: merged blocks with smaller ones beside them fall between sample points. */
+  static const int maps[] = {63, 90, 130};
   for (int i = 0; i < 4; i++)
-    for (int map = 63; map <= 130; map += 67) {
-      for (int k = 0; k < 3; k++) check_watertight(fields[k], slopes[i], 0.3 * i, map, 0);
-      check_watertight("backprojection:primitive=quad,merge=0", slopes[i], 0.3 * i, map, 130 * 130 * 0x1p-24);
+    for (int m = 0; m < 3; m++) {
+      for (int k = 0; k < 3; k++) check_watertight(fields[k], slopes[i], 0.3 * i, maps[m], 0);
+      check_watertight("backprojection:primitive=quad,merge=0", slopes[i], 0.3 * i, maps[m], 130 * 130 * 0x1p-24);
     }
 }
 

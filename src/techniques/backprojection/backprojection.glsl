@@ -4,6 +4,7 @@
 #include "search/primitive.glsl"
 
 #define pn_Cover float
+#define PN_OVERLAPS 0 // a sum
 
 void pn_cover_rectangle(inout pn_Cover c, vec2 low, vec2 high) {
   vec2 size = max(clamp(high, 0.0, 1.0) - clamp(low, 0.0, 1.0), 0.0);

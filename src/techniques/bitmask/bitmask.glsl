@@ -5,6 +5,7 @@
 #include "search/primitive.glsl"
 
 #define pn_Cover pn_Field
+#define PN_OVERLAPS 1 // sets of bits
 
 void pn_cover_rectangle(inout pn_Cover c, vec2 low, vec2 high) {
   pn_Field f = pn_rectangle(low, high);
