@@ -27,10 +27,22 @@ bool pn_receives(ivec2 pixel) {
 float pn_depth_error(float depth) { return max(pn_quantum.x, pn_quantum.y * abs(depth)); }
 
 // Rasterisers are farther off where they cut huge triangles: thin pieces are left along an edge, and single pixels of
-// them lie beside a surface that is straight around them. How far a pixel's
-// depth lies beside a straight line through the two on either side of it; 0 where it lies on it, or there is none.
+// them lie beside a surface that is straight around them.
+
+// At the view's border: how far depth lies beside a straight line through the three pixels inwards; 0 where it lies on
+// it, or there is none.
+float pn_stray_inwards(ivec2 pixel, ivec2 inwards, float depth, float error) {
+  if (!pn_view_has(pixel + 3 * inwards)) return 0.0;
+  float d1 = pn_depth_at(pixel + inwards), d2 = pn_depth_at(pixel + 2 * inwards);
+  float beside = abs(depth - 2.0 * d1 + d2);
+  bool straight = abs(d1 - 2.0 * d2 + pn_depth_at(pixel + 3 * inwards)) <= 4.0 * error;
+  return beside > 4.0 * error && straight ? beside : 0.0;
+}
+
+// The same elsewhere, of a line through the two pixels on either side.
 float pn_stray_along(ivec2 pixel, ivec2 axis, float depth, float error) {
-  if (!pn_view_has(pixel - 2 * axis) || !pn_view_has(pixel + 2 * axis)) return 0.0;
+  if (!pn_view_has(pixel - 2 * axis)) return pn_stray_inwards(pixel, axis, depth, error);
+  if (!pn_view_has(pixel + 2 * axis)) return pn_stray_inwards(pixel, -axis, depth, error);
   float before = pn_depth_at(pixel - axis), after = pn_depth_at(pixel + axis);
   float beside = abs(depth - 0.5 * (before + after)), slope = 0.5 * (after - before);
   if (beside <= 2.0 * error) return 0.0;
