@@ -52,13 +52,12 @@ bool pn_goes_on(int light, int map, vec2 low, vec2 high, float dw_far, float dw_
 }
 
 
-// Which corners of a quad are taken next, of those left that hide (a bit for each): all where the quad is one
-// surface, else a part that lies on one; where that is steep, one row of it, since the rectangle around corners at
-// different distances hides what none of them does.
-int pn_next_part(float gaps, int left, bool steep) {
+// Which corners of a quad are taken next, of those left that hide (a bit for each): of a row, as many as lie on one
+// surface. One rectangle around both rows would lie elsewhere than the corners do; other layers have other corners
+// there, and together they would hide more than either.
+int pn_next_part(float gaps, int left) {
   int corner = (left & 1) != 0 ? 0 : (left & 2) != 0 ? 1 : (left & 4) != 0 ? 2 : 3;
-  int part = pn_gap_part(gaps, corner) & left;
-  return steep ? part & (corner < 2 ? 3 : 12) : part;
+  return pn_gap_part(gaps, corner) & left & (corner < 2 ? 3 : 12);
 }
 #endif
 
@@ -118,19 +117,19 @@ void pn_texel_patch(int light, highp sampler2DArray maps, pn_ShadedPoint r, int 
 }
 
 #if PN_PRIMITIVE != PN_PATCH
-// Where the rectangle ends along one axis: at near and far, at the distances of the corners there, as far as they
-// hide: share 1 is the corner, 0 the middle.
-vec2 pn_edge(float scale, float near, float far, vec2 share, vec2 inverse) {
+// Where the rectangle ends along one axis: at near and far, at the distances of the corners there; where none of those
+// hides, in the middle.
+vec2 pn_edge(float scale, float near, float far, vec2 corners, vec2 inverse) {
   float middle = 0.5 * (near + far);
-  vec2 at = 0.5 + scale * vec2(mix(middle, near, share.x) * (share.x > 0.0 ? inverse.x : inverse.y),
-                               mix(middle, far, share.y) * (share.y > 0.0 ? inverse.y : inverse.x));
+  vec2 at = 0.5 + scale * vec2(corners.x > 0.0 ? near * inverse.x : middle * inverse.y,
+                               corners.y > 0.0 ? far * inverse.y : middle * inverse.x);
   return vec2(min(at.x, at.y), max(at.x, at.y));
 }
 
 // The primitive of a block's four corner samples, or the next part of it. gaps: PN_NO_GAP too where no light passes
-// through them; left: corners not taken yet, those that hide nothing among them. steep: see pn_next_part.
+// through them; left: corners not taken yet, those that hide nothing among them.
 pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 first, ivec2 last,
-                float gaps, bool steep, inout int left) {
+                float gaps, inout int left) {
   int array_layer = pn_array_layer(light, map, layer);
   ivec2 size = pn_map_size(light, map), end = min(last, size - 1);
   vec4 depth = vec4(texelFetch(maps, ivec3(first, array_layer), 0).r,
@@ -157,7 +156,7 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map,
   left = q.whole || PN_EDGES == 0 ? 0 : left & (bits.x | bits.y | bits.z | bits.w);
   q.some = q.whole || left != 0;
   if (!q.whole) {
-    int part = pn_next_part(gaps, left, steep);
+    int part = pn_next_part(gaps, left);
     hide = vec4(ivec4(part) >> ivec4(0, 1, 2, 3) & 1);
     left &= ~part;
   }
@@ -165,14 +164,11 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map,
   vec2 scale = 0.5 / pn_extent(light);
   q.x = 0.5 + scale.x * s * inverse;
   q.y = 0.5 + scale.y * t * inverse;
-  // Columns and rows that hide, and the mean w of their corners. The rectangle has as many quarters of the cell as
-  // corners hide: where both columns do, a row with one corner has half of its share.
+  // Columns and rows that hide, and the mean w of their corners.
   vec4 hidden = hide * dw;
   vec2 columns = hide.xy + hide.zw, rows = hide.xz + hide.yw;
-  vec2 column_share = min(columns, vec2(1.0));
-  vec2 row_share = rows / max(column_share.x + column_share.y, 1.0);
-  vec2 along_x = pn_edge(scale.x, low.x, high.x, column_share, columns / max(hidden.xy + hidden.zw, vec2(PN_TINY)));
-  vec2 along_y = pn_edge(scale.y, low.y, high.y, row_share, rows / max(hidden.xz + hidden.yw, vec2(PN_TINY)));
+  vec2 along_x = pn_edge(scale.x, low.x, high.x, columns, columns / max(hidden.xy + hidden.zw, vec2(PN_TINY)));
+  vec2 along_y = pn_edge(scale.y, low.y, high.y, rows, rows / max(hidden.xz + hidden.yw, vec2(PN_TINY)));
   q.low = vec2(along_x.x, along_y.x);
   q.high = vec2(along_x.y, along_y.y);
   return q;
@@ -189,7 +185,7 @@ void pn_texel_quad(int light, highp sampler2DArray maps, highp sampler2DArray ra
   vec2 low = pn_map_st(light, map, vec2(texel) + 0.5) - r.m.xy;
   vec2 high = pn_map_st(light, map, vec2(texel) + 1.5) - r.m.xy;
   bool bridged = pn_goes_on(light, map, low, high, max(w.z - r.m.z, r.epsilon_w), w.x - r.m.z, w.w);
-  pn_Quad q = pn_quad(light, maps, r, map, layer, texel, texel + 1, bridged ? PN_NO_GAP : w.w, w.z < w.x, left);
+  pn_Quad q = pn_quad(light, maps, r, map, layer, texel, texel + 1, bridged ? PN_NO_GAP : w.w, left);
   if (!q.some) return;
   if (q.whole)
     pn_cover_quad(c, q);
@@ -374,7 +370,7 @@ struct pn_Walk {
   bool going;
   int left;         // corners of this block's primitive that are still to be covered; 0: it is to be visited
   float gaps;       // of that primitive
-  bool steep, exact; // see pn_next_part; whole, it may be covered exactly
+  bool exact;        // whole, it may be covered exactly
 };
 
 // One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Wherever in its range the
@@ -411,8 +407,7 @@ int pn_visit_block(int light, highp sampler2DArray range, pn_ShadedPoint r, int 
 #else
   // Inside the block edges may fall on the light where those of the block are beside it.
   vec2 shift = scale * max(abs(low), abs(high)) * (1.0 / dw_least - 1.0 / dw.x);
-  bool steep = max(shift.x, shift.y) > merge;
-  bool bridged = !steep || pn_goes_on(light, map, low, high, dw_least, dw.x, block.w);
+  bool bridged = max(shift.x, shift.y) <= merge || pn_goes_on(light, map, low, high, dw_least, dw.x, block.w);
 #endif
   bool solid = dw.y > r.epsilon_w && front.x > rise && bridged;
   bool one = solid && max(moved.x, moved.y) <= merge;
@@ -435,7 +430,6 @@ int pn_visit_block(int light, highp sampler2DArray range, pn_ShadedPoint r, int 
   if (!leaf && !one) return PN_DOWN;
   walk.left = PN_ALL_CORNERS;
   walk.gaps = bridged || walk.level > 0 ? PN_NO_GAP : block.w;
-  walk.steep = steep;
   walk.exact = !one;
   return PN_STAY;
 #endif
@@ -482,7 +476,7 @@ void pn_spread(inout pn_Quad q) {
 bool pn_take_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, inout pn_Walk walk,
                   inout pn_Cover c, out pn_Quad quad) {
   ivec2 first = walk.node << walk.level, last = (walk.node + 1) << walk.level;
-  quad = pn_quad(light, maps, r, map, layer, first, last, walk.gaps, walk.steep, walk.left);
+  quad = pn_quad(light, maps, r, map, layer, first, last, walk.gaps, walk.left);
   if (walk.left == 0) pn_walk(walk, false);
   if (!quad.some) return false;
 #if PN_PRIMITIVE == PN_QUAD_EXACT

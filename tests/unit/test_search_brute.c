@@ -288,24 +288,20 @@ static side side_of(const int hide[4], const double dw[4], const int corners[2])
   return s;
 }
 
-/* Where a side ends: share 1 at its corner, 0 at the middle of the cell. */
-static double end_of(double corner, double middle, double share, const side *own, const side *other) {
-  return (middle + share * (corner - middle)) * (own->count ? own->inverse : other->inverse);
+/* Where a side ends: at its corners, or without any in the middle of the cell. */
+static double end_of(double corner, double middle, const side *own, const side *other) {
+  return own->count ? corner * own->inverse : middle * other->inverse;
 }
 
-/* The rectangle of as many quarters of the cell as corners hide: columns are whole or not there, and where both are, a
- * row with one corner has half of its share. */
+/* The rectangle of all four corners, or of those of one row. */
 static box quad_box(const receiver *r, const place q[4], const int hide[4], const double dw[4]) {
   static const int corners[2][2][2] = {{{0, 2}, {1, 3}}, {{0, 1}, {2, 3}}};
   box b;
-  int columns = 0;
   for (int c = 0; c < 2; c++) {
     double low = (c ? q[0].t : q[0].s) - (c ? r->m.t : r->m.s), high = (c ? q[3].t : q[3].s) - (c ? r->m.t : r->m.s);
     side near = side_of(hide, dw, corners[c][0]), far = side_of(hide, dw, corners[c][1]);
-    if (c == 0) columns = (near.count > 0) + (far.count > 0);
-    double full = c == 0 ? 1 : columns, middle = 0.5 * (low + high);
-    double from = end_of(low, middle, c == 0 ? near.count > 0 : near.count / full, &near, &far);
-    double to = end_of(high, middle, c == 0 ? far.count > 0 : far.count / full, &far, &near);
+    double middle = 0.5 * (low + high);
+    double from = end_of(low, middle, &near, &far), to = end_of(high, middle, &far, &near);
     b.low[c] = 0.5 + 0.5 * fmin(from, to) / r->half[c];
     b.high[c] = 0.5 + 0.5 * fmax(from, to) / r->half[c];
   }
@@ -329,13 +325,13 @@ static void maybe_quad(const receiver *r, const place q[4], const int hide[4], c
   cover_box(f, &b, open_at(r, least), MAYBE);
 }
 
-/* What is left of a quad: surface by surface, and unless all lie at the same w, row by row of it. */
+/* What is left of a quad: surface by surface, and row by row of it. */
 static void add_parts(const receiver *r, const place q[4], const int hide[4], const double dw[4], const gaps *g,
-                      bool level, field *f) {
+                      field *f) {
   int left = 0;
   for (int i = 0; i < 4; i++) left |= (hide[i] == YES) << i;
   for (int first = 0; first < 4; first++) {
-    int part = left & g->parts[first] & (level ? 15 : first < 2 ? 3 : 12), kept[4];
+    int part = left & g->parts[first] & (first < 2 ? 3 : 12), kept[4];
     if (!(left >> first & 1)) continue;
     left &= ~part;
     double least = 1e30;
@@ -351,16 +347,14 @@ static void add_parts(const receiver *r, const place q[4], const int hide[4], co
 static void add_quad(const atlas *a, const receiver *r, int map, int layer, int x, int y, const shape *how, field *f) {
   static const gaps none = {{15, 15, 15, 15}, 255, false};
   place q[4];
-  bool there[4], open = false, level = true;
+  bool there[4], open = false;
   int hide[4], count[3] = {0};
-  double dw[4], cell = fmax(r->texel[0], r->texel[1]), least = 1e30, w = -1e30;
+  double dw[4], cell = fmax(r->texel[0], r->texel[1]), least = 1e30;
   for (int i = 0; i < 4; i++) {
     there[i] = sample_of(a, map, layer, x + (i & 1), y + (i >> 1), &q[i]);
     dw[i] = q[i].w - r->m.w;
     hide[i] = there[i] ? hides(r, &q[i], false, 0) : NO;
     count[hide[i]]++;
-    level = level && (!there[i] || w < -1e29 || q[i].w == w);
-    if (there[i]) w = q[i].w;
   }
   if (count[NO] == 4 || (count[NO] && !how->edges)) return;
   int last = a->layers - 1, behind = how->two_sided  ? (layer == last ? BEHIND_NEXT : last)
@@ -381,7 +375,7 @@ static void add_quad(const atlas *a, const receiver *r, int map, int layer, int 
     return;
   }
   if (whole == NO) {
-    add_parts(r, q, hide, dw, &g, level, f);
+    add_parts(r, q, hide, dw, &g, f);
     return;
   }
   for (int i = 0; i < 4; i++) least = fmin(least, dw[i]);
