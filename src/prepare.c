@@ -65,27 +65,29 @@ static const float triangle[9] = {-0.2f, -0.1f, -1, 0.2f, -0.2f, -1, 0, 0.3f, -1
 static const float texcoords[6] = {0, 0, 1, 0, 0, 1};
 static const float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-/* In the plane that the view shows: a ground, without which no caster is drawn over a floor. */
-static const float ground[9] = {-0.9f, -0.9f, 0, 0.9f, -0.9f, 0, 0, 0.9f, 0};
+/* In the plane that the view shows: a ground, without which no caster is drawn over a floor; and before it something
+ * of the same mesh, or its box would tell that it shadows nothing. */
+static const float ground[18] = {-0.9f, -0.9f, 0, 0.9f, -0.9f, 0, 0, 0.9f, 0,
+                                 -0.2f, -0.1f, -1, 0.2f, -0.2f, -1, 0, 0.3f, -1};
 
-static pn_result add_triangle(rehearsal *r, const float *corners, pn_gl alpha) {
+static pn_result add_triangles(rehearsal *r, const float *corners, size_t count, pn_gl alpha) {
   pn_mesh mesh;
-  pn_mesh_desc desc = {.positions = {.data = corners, .count = 3}, .alpha_texture = alpha};
+  pn_mesh_desc desc = {.positions = {.data = corners, .count = 3 * count}, .alpha_texture = alpha};
   if (alpha) desc.texcoords = (pn_span){.data = texcoords, .count = 3};
   pn_result result = pn_mesh_add(r->casters, &desc, &mesh);
   return result == PN_OK ? pn_instance_add(r->casters, mesh, identity, 0, NULL) : result;
 }
 
+static pn_light_desc light_fitted(pn_fit fit) {
+  return (pn_light_desc){
+      .center = {0, 0, -2}, .direction = {0, 0, 1}, .half_u = 0.5f, .half_v = 0.5f, .fit = fit, .map_width = 8};
+}
+
 static pn_result make_scene(rehearsal *r, const pni_technique_class *technique, const double *values) {
-  static const pn_light_desc light = {.center = {0, 0, -2},
-                                      .direction = {0, 0, 1},
-                                      .half_u = 0.5f,
-                                      .half_v = 0.5f,
-                                      .fit = PN_FIT_VISIBLE,
-                                      .map_width = 8};
+  pn_light_desc light = light_fitted(PN_FIT_VISIBLE);
   pn_result result = pn_casters_create(r->context, &r->casters);
-  if (result == PN_OK) result = add_triangle(r, triangle, 0);
-  if (result == PN_OK) result = add_triangle(r, triangle, r->alpha.id);
+  if (result == PN_OK) result = add_triangles(r, triangle, 1, 0);
+  if (result == PN_OK) result = add_triangles(r, triangle, 1, r->alpha.id);
   if (result == PN_OK) result = pn_receiver_create(r->context, &r->receiver);
   if (result == PN_OK) result = pn_receiver_set(r->receiver, &r->view);
   if (result == PN_OK) result = pn_light_create(r->context, &r->light);
@@ -100,6 +102,13 @@ static pn_result make_scene(rehearsal *r, const pni_technique_class *technique, 
 static pn_result draw_once(rehearsal *r) {
   pn_result result = pn_maps_update(r->light, r->casters, PN_GROUPS_ALL, &r->receiver, 1);
   return result == PN_OK ? pn_visibility(r->light, r->receiver) : result;
+}
+
+/* Some techniques then look at the view themselves. */
+static pn_result draw_fitted_to_casters(rehearsal *r) {
+  pn_light_desc light = light_fitted(PN_FIT_CASTERS);
+  pn_result result = pn_light_set(r->light, &light);
+  return result == PN_OK ? draw_once(r) : result;
 }
 
 static void end(rehearsal *r) {
@@ -120,8 +129,9 @@ static pn_result rehearse(pn_context *context, const pni_technique_class *techni
   describe_view(&r, like);
   if (result == PN_OK) result = make_scene(&r, technique, values);
   if (result == PN_OK) result = draw_once(&r);
-  if (result == PN_OK) result = add_triangle(&r, ground, 0);
+  if (result == PN_OK) result = add_triangles(&r, ground, 2, 0);
   if (result == PN_OK) result = draw_once(&r);
+  if (result == PN_OK) result = draw_fitted_to_casters(&r);
   end(&r);
   return result;
 }

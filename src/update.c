@@ -160,7 +160,8 @@ static pn_result fit_to_surfaces(pn_light *light, pn_casters *casters, const pni
                               .grid = seen->grid,
                               .lower = lower_plane,
                               .user = &views};
-  pn_result result = pni_trim(pni_light_gpu(light), light->trim, &request, &kept);
+  pn_result result = pni_casters_check(casters, light->groups);
+  if (result == PN_OK) result = pni_trim(pni_light_gpu(light), light->trim, &request, &kept);
   if (result == PN_OK) fit_light(light, casters, want, seen, &kept);
   return result;
 }

@@ -47,6 +47,10 @@ bool pni_casters_call_host(const pn_casters *casters, uint32_t groups);
 /* Whether all of the mesh lies farther from the light than that. */
 bool pni_mesh_beyond(const pni_mesh_data *mesh, const pni_matrix *light_from_object, double distance);
 
+/* Whether the alpha textures that they draw with are still there: hosts delete textures. Draws that are planned look
+ * themselves. */
+pn_result pni_casters_check(const pn_casters *casters, uint32_t groups);
+
 /* Draws all casters of groups into the pass that has begun. */
 typedef struct {
   const pni_pass *pass; /* that one: it is taken up again after each of the host's callbacks */
@@ -56,7 +60,7 @@ typedef struct {
   double range;               /* what lies wholly beyond that distance casts nothing; 0: no limit */
   uint32_t groups;
   bool without_host;       /* callbacks are not called: their time is pn_maps_update */
-  const float *floor; /* a, b, c: meshes are drawn where depth < a x + b y + c in window coordinates; NULL: all */
+  const float *floor;      /* a, b, c: meshes are drawn where depth < a x + b y + c in window coordinates; NULL: all */
   const pni_texture *peel; /* the previous layer, or NULL */
   int layer;
 } pni_caster_draw;

@@ -141,11 +141,8 @@ static bool mirrors(const pni_matrix *a) {
          0;
 }
 
-/* Hosts delete textures; one look a call. */
-static pn_result check_alpha_textures(pn_casters *casters, uint32_t groups) {
+pn_result pni_casters_check(const pn_casters *casters, uint32_t groups) {
   pni_gpu *gpu = &casters->object.context->gpu;
-  if (casters->checked == gpu->plan.number) return PN_OK;
-  casters->checked = gpu->plan.number;
   const pni_mesh_data *last = NULL;
   for (int i = 0; i < casters->instance_count; i++) {
     const pni_instance_data *instance = &casters->instances[i];
@@ -159,6 +156,14 @@ static pn_result check_alpha_textures(pn_casters *casters, uint32_t groups) {
   return PN_OK;
 }
 
+/* One look a call. */
+static pn_result check_once(pn_casters *casters, uint32_t groups) {
+  const pni_gpu *gpu = &casters->object.context->gpu;
+  if (casters->checked == gpu->plan.number) return PN_OK;
+  casters->checked = gpu->plan.number;
+  return pni_casters_check(casters, groups);
+}
+
 /* The programs that they need: no more than two. */
 static pn_result plan_meshes(pn_casters *casters, const pni_caster_draw *draw) {
   bool any[2] = {false, false};
@@ -166,7 +171,7 @@ static pn_result plan_meshes(pn_casters *casters, const pni_caster_draw *draw) {
     const pni_instance_data *instance = &casters->instances[i];
     if (draw->groups >> instance->group & 1) any[casters->meshes[instance->mesh].alpha_texture != 0] = true;
   }
-  pn_result result = any[1] ? check_alpha_textures(casters, draw->groups) : PN_OK;
+  pn_result result = any[1] ? check_once(casters, draw->groups) : PN_OK;
   for (int alpha = 0; alpha < 2 && result == PN_OK; alpha++) {
     char defines[DEFINES];
     pni_program_key key = caster_program(alpha, draw->peel != NULL, draw->floor != NULL, defines);
