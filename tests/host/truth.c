@@ -110,6 +110,7 @@ static void map_ray(const truth_light *light, double s, double t, vec3 *start, v
 }
 
 int truth_hard(const truth_light *light, const scene *world, vec3 p, vec3 n, double texels) {
+  enum { RAYS = 5 }; /* a side: what is thinner than 3/8 of a texel may slip through */
   int corners = truth_corners(light, p, n);
   if (corners == 0) return TRUTH_AWAY;
   if (corners < 4) return TRUTH_EITHER;
@@ -117,9 +118,10 @@ int truth_hard(const truth_light *light, const scene *world, vec3 p, vec3 n, dou
   vec3 q = sun ? p : sub(p, light->center);
   double z = sun ? 1 : dot(q, light->direction), s = dot(q, light->u) / z, t = dot(q, light->v) / z;
   int answer = -1;
-  for (int k = 0; k < 9; k++) {
+  for (int k = 0; k < RAYS * RAYS; k++) {
     vec3 start, step;
-    map_ray(light, s + texels * light->texel_s * (k % 3 - 1), t + texels * light->texel_t * (k / 3 - 1), &start, &step);
+    double a = texels * (2.0 * (k % RAYS) / (RAYS - 1) - 1), b = texels * (2.0 * (k / RAYS) / (RAYS - 1) - 1);
+    map_ray(light, s + light->texel_s * a, t + light->texel_t * b, &start, &step);
     /* The same surface as seen along the neighbouring ray. */
     double slope = dot(n, step), depth = dot(n, sub(p, start)) / slope;
     if (!(-slope > 0.1 * sqrt(dot(step, step))) || !(depth > 0)) return TRUTH_EITHER;
