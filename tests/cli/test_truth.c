@@ -11,44 +11,17 @@
 
 #include <cjson/cJSON.h>
 #include <cmocka.h>
-#include <openexr.h>
+
+#include "exr_channel.h"
 
 enum { WIDTH = 96, HEIGHT = 72, PIXELS = WIDTH * HEIGHT };
 
 static char folder[] = "/tmp/penumbra-truth-XXXXXX";
 
-/* One channel of an EXR file, found by its name. */
 static void read_channel(const char *name, const char *channel, float *out) {
   char path[256];
   snprintf(path, sizeof path, "%s/%s", folder, name);
-  exr_context_t context = NULL;
-  assert_int_equal(exr_start_read(&context, path, NULL), 0);
-  int rows = 0, found = 0;
-  assert_int_equal(exr_get_scanlines_per_chunk(context, 0, &rows), 0);
-  exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
-  for (int y = 0; y < HEIGHT; y += rows) {
-    exr_chunk_info_t chunk;
-    assert_int_equal(exr_read_scanline_chunk_info(context, 0, y, &chunk), 0);
-    assert_int_equal(y ? exr_decoding_update(context, 0, &chunk, &pipeline)
-                       : exr_decoding_initialize(context, 0, &chunk, &pipeline),
-                     0);
-    for (int c = 0; c < pipeline.channel_count; c++) {
-      exr_coding_channel_info_t *info = &pipeline.channels[c];
-      info->decode_to_ptr = NULL;
-      if (strcmp(info->channel_name, channel) != 0) continue;
-      found = 1;
-      info->user_bytes_per_element = 4;
-      info->user_data_type = EXR_PIXEL_FLOAT;
-      info->user_pixel_stride = sizeof(float);
-      info->user_line_stride = WIDTH * sizeof(float);
-      info->decode_to_ptr = (uint8_t *)(out + (size_t)y * WIDTH);
-    }
-    if (!y) assert_int_equal(exr_decoding_choose_default_routines(context, 0, &pipeline), 0);
-    assert_int_equal(exr_decoding_run(context, 0, &pipeline), 0);
-  }
-  assert_true(found);
-  exr_decoding_destroy(context, &pipeline);
-  exr_finish(&context);
+  assert_true(exr_channel_read(path, channel, WIDTH, HEIGHT, out));
 }
 
 static void run(const char *command, const char *scene, const char *light, const char *options) {
