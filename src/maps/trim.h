@@ -18,9 +18,6 @@ typedef struct {
 /* Bounds of the samples that can shadow what the grid holds, outwards to the next ones. False: there are none. */
 bool pni_trim_bounds(const pni_trim_image *image, const pni_grid *grid, double out[4]);
 
-/* images: where it may draw, kept from time to time. Draws the casters within the fit's bounds, and finds which of them count. Draws anew over what is left where that is
- * much less. Bounds are inverted where nothing casts on what is seen. has_floor: casters lie on
- * the floor or below. */
 typedef struct {
   const pni_frame *frame;
   pn_casters *casters;
@@ -33,6 +30,10 @@ typedef struct {
   pn_result (*lower)(void *user, double plane[3], bool *found);
   void *user;
 } pni_trim_request;
+
+/* Draws the casters within the fit's bounds into images, which are kept from time to time, and finds which of them
+ * count; anew over what is left, where that is much less. Bounds are inverted where nothing casts on what is seen.
+ * has_floor: casters lie on the floor or below. */
 pn_result pni_trim(pni_gpu *gpu, pni_texture images[2], const pni_trim_request *request, pni_fit_kept *out);
 
 #endif
