@@ -245,8 +245,27 @@ static void test_winding(void **state) {
   pn_context_destroy(&b.context);
 }
 
+/* A box under a sun along its sides, whose faces are seen exactly from their edges: the four edges that end the top and
+ * the four of the bottom are silhouettes, those between side faces lie on no side. */
+static void test_faces_from_their_edge(void **state) {
+  (void)state;
+  static const uint32_t indices[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                       2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  float corners[24];
+  for (int i = 0; i < 24; i++) corners[i] = i / 3 >> i % 3 & 1 ? 1.0f : -1.0f;
+  bench b;
+  pn_mesh mesh;
+  pni_edge_list list;
+  open_bench(&b);
+  pni_mesh_data *data = add_mesh(&b, corners, 8, indices, 36, &mesh);
+  assert_ok(pni_edges_find(b.gpu, corners, 8, indices, 36, &list));
+  assert_int_equal(compare(&b, data, corners, &list, pni_matrix_identity(), true), 8);
+  pni_edges_free(b.gpu, &list);
+  pn_context_destroy(&b.context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_models), cmocka_unit_test(test_deforming),
-                                     cmocka_unit_test(test_winding)};
+                                     cmocka_unit_test(test_winding), cmocka_unit_test(test_faces_from_their_edge)};
   return GL_RUN("silhouettes", tests);
 }
