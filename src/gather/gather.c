@@ -56,7 +56,7 @@ static pn_result draw(const pni_job *job, const gather_pass *p) {
   if (p->debug) pass.color[1] = pni_image_of(job->search, 0, 0);
   pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
-  pni_receiver_uniforms(job->receiver, job->frame, &job->maps->rounding, p->scale);
+  pni_receiver_uniforms(job->receiver, job->frame, job->emission, &job->maps->rounding, p->scale);
   pni_set_texture(gpu, "pn_maps", &job->maps->depth);
   pni_set_texture(gpu, "pn_range", pni_gather_beside(job->gathering, job->maps, job->light_state));
   if (p->upsample) pni_set_texture(gpu, "pn_low", job->low);

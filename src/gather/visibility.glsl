@@ -3,8 +3,7 @@
 // which follows this file.
 #include "shaders/precision.glsl"
 #include "gather/channels.glsl"
-#include "gather/shaded_point.glsl"
-#include "receiver/surface.glsl"
+#include "gather/shaded_surface.glsl"
 
 uniform highp sampler2DArray pn_maps;
 uniform highp sampler2DArray pn_range; // the range pyramid, or what the technique puts in its place
@@ -19,7 +18,7 @@ pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2D
 pn_Visibility pn_pixel_visibility(ivec2 pixel) {
   if (!pn_receives(pixel)) return pn_Visibility(1.0);
   pn_Surface s = pn_surface(pixel);
-  pn_ShadedPoint r = pn_shaded_point(0, s.p, s.error, s.n, s.sigma);
+  pn_ShadedPoint r = pn_shaded_surface(0, s);
   if (pn_unlit(0, r) || pn_above_casters(0, r)) return pn_Visibility(1.0);
   return clamp(pn_technique(0, pn_maps, pn_range, r), 0.0, 1.0);
 }

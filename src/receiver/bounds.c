@@ -28,7 +28,7 @@ static pn_result step(pn_receiver *receiver, const pni_frame *frame, const pni_t
     pni_set_texture(gpu, "pn_least_below", &from[0]);
     pni_set_texture(gpu, "pn_most_below", &from[1]);
   } else {
-    pni_receiver_uniforms(receiver, frame, &(pni_rounding){0}, 1); /* positions alone are read */
+    pni_receiver_uniforms(receiver, frame, NULL, &(pni_rounding){0}, 1);
     pni_set_int(gpu, "pn_parallel", frame->projection == PNI_PARALLEL);
   }
   pni_draw_screen(gpu);
@@ -85,7 +85,7 @@ static pn_result find_planes(pn_receiver *receiver, const pni_frame *frame, cons
                    .height = to->height};
   result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
-  pni_receiver_uniforms(receiver, frame, &(pni_rounding){0}, 1); /* what casters lose is the map's to add */
+  pni_receiver_uniforms(receiver, frame, NULL, &(pni_rounding){0}, 1); /* what casters lose is the map's to add */
   pni_set_int(gpu, "pn_parallel", frame->projection == PNI_PARALLEL);
   if (given) pni_set_floats(gpu, "pn_given", (const float[4]){(float)given[0], (float)given[1]});
   else pni_set_floats(gpu, "pn_window", (const float[4]){(float)extent[0], (float)extent[1], steepest});

@@ -43,9 +43,11 @@ pn_result pni_receiver_surfaces(pn_receiver *receiver);
 /* Lines for a program that includes receiver/surface.glsl or receiver/depth.glsl. */
 enum { PNI_RECEIVER_DEFINES = 64 };
 void pni_receiver_defines(const pn_receiver *receiver, char out[PNI_RECEIVER_DEFINES]);
-/* Textures and uniforms for such a program, in the pass that has begun. rounding: of the light's casters. scale 1:
+/* Textures and uniforms for such a program, in the pass that has begun. emission: NULL where positions alone are read.
+ * rounding: of the light's casters. scale 1:
  * every pixel itself. */
-void pni_receiver_uniforms(pn_receiver *receiver, const pni_frame *frame, const pni_rounding *rounding, int scale);
+void pni_receiver_uniforms(pn_receiver *receiver, const pni_frame *frame, const pni_emission *emission,
+                           const pni_rounding *rounding, int scale);
 
 /* Adds what the camera sees to the region: reads a few numbers back. (receiver/bounds.c) */
 pn_result pni_receiver_bounds(pn_receiver *receiver, const pni_frame *frame, pni_region *region);

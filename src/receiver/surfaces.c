@@ -107,7 +107,15 @@ static void set_rounding(const pn_receiver *receiver, const pni_rounding *roundi
   pni_set_floats(gpu_of(receiver), "pn_lost", lost);
 }
 
-void pni_receiver_uniforms(pn_receiver *receiver, const pni_frame *frame, const pni_rounding *rounding, int scale) {
+/* Where the light is, for planes that depth does not tell. */
+static void set_shining(const pn_receiver *receiver, const pni_frame *frame, const pni_emission *emission) {
+  const float shining[4] = {(float)emission->extent[0], (float)emission->extent[1], 0,
+                            frame->projection == PNI_PARALLEL ? 0.0f : 1.0f};
+  pni_set_floats(gpu_of(receiver), "pn_shining", shining);
+}
+
+void pni_receiver_uniforms(pn_receiver *receiver, const pni_frame *frame, const pni_emission *emission,
+                           const pni_rounding *rounding, int scale) {
   pni_gpu *gpu = gpu_of(receiver);
   pni_matrix light_from_scene = pni_light_from_scene(frame), pixel_from_light;
   pni_matrix light_from_pixel = pni_matrix_multiply(&light_from_scene, &receiver->scene_from_pixel);
@@ -121,6 +129,7 @@ void pni_receiver_uniforms(pn_receiver *receiver, const pni_frame *frame, const 
   pni_set_matrix3(gpu, "pn_light_from_normal", normal);
   find_eye(receiver, &light_from_scene, eye);
   pni_set_floats(gpu, "pn_eye", eye);
+  if (emission) set_shining(receiver, frame, emission);
   set_rounding(receiver, rounding);
   set_depth(receiver, scale);
 }

@@ -43,10 +43,10 @@ static const char vertex_text[] =
 static GLuint surface_program(pni_gpu *gpu, pn_receiver *receiver, pni_program *names) {
   static const char *const paths[] = {"shaders/precision.glsl", "gather/shaded_point.glsl", "receiver/surface.glsl",
                                       NULL};
-  enum { SAMPLERS = 3, UNIFORMS = 10 };
+  enum { SAMPLERS = 3, UNIFORMS = 11 };
   static const char *const uniforms[UNIFORMS] = {
-      "pn_depth", "pn_normal", "pn_planes", "pn_light_from_pixel", "pn_pixel_from_light", "pn_light_from_normal",
-      "pn_eye",   "pn_view",   "pn_offset", "pn_quantum"};
+      "pn_depth", "pn_normal",  "pn_planes", "pn_light_from_pixel", "pn_pixel_from_light", "pn_light_from_normal",
+      "pn_eye",   "pn_shining", "pn_view",   "pn_offset",           "pn_quantum"};
   char defines[PNI_RECEIVER_DEFINES], *text;
   pni_receiver_defines(receiver, defines);
   assert_ok(pni_shader_text(gpu, paths, defines, &text));
@@ -95,7 +95,7 @@ static surfaces run(stage *s, const view *v, const pni_frame *frame) {
   gpu->program = &names;
   glUseProgram(program);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-  pni_receiver_uniforms(s->receiver, frame, &(pni_rounding){0}, 1);
+  pni_receiver_uniforms(s->receiver, frame, NULL, &(pni_rounding){0}, 1);
   glBindVertexArray(array);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   surfaces out = {gl_read_texture(images[0], 0, -1, width, height, 4),

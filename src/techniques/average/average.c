@@ -199,7 +199,7 @@ static pn_result add_batch(const pni_job *job, const pni_maps *batch, const pni_
                    .height = to->height};
   result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
-  pni_receiver_uniforms(job->receiver, job->frame, &job->maps->rounding, 1);
+  pni_receiver_uniforms(job->receiver, job->frame, job->emission, &job->maps->rounding, 1);
   pni_set_texture(gpu, "pn_maps", &batch->depth);
   pni_set_texture(gpu, "pn_counts", from);
   pni_draw_screen(gpu);

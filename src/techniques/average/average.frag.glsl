@@ -2,7 +2,7 @@
 // pass reads a batch of maps and adds to the counts of the passes before it.
 #include "shaders/precision.glsl"
 #include "search/lookup.glsl"
-#include "receiver/surface.glsl"
+#include "gather/shaded_surface.glsl"
 
 uniform highp sampler2DArray pn_maps;
 uniform highp sampler2D pn_counts; // seen, above the horizon
@@ -22,7 +22,7 @@ void main() {
   vec2 counts = texelFetch(pn_counts, ivec2(gl_FragCoord.xy), 0).rg;
   if (pn_receives(pixel)) {
     pn_Surface s = pn_surface(pixel);
-    pn_ShadedPoint r = pn_shaded_point(0, s.p, s.error, s.n, s.sigma);
+    pn_ShadedPoint r = pn_shaded_surface(0, s);
     if (!pn_unlit(0, r))
       for (int map = 0; map < pn_map_count(0); map++) {
         if (pn_horizon(r.n, r.k, pn_lights[0].maps[map].light_point) <= 0.0) continue;

@@ -1,7 +1,7 @@
 // The soft shadow map projected onto what the camera sees.
 #include "shaders/precision.glsl"
 #include "search/lookup.glsl"
-#include "receiver/surface.glsl"
+#include "gather/shaded_surface.glsl"
 #include "techniques/ssm/seen.glsl"
 #include "gather/horizon.glsl"
 
@@ -69,7 +69,7 @@ void main() {
   float hidden = 0.0;
   if (pn_receives(pixel)) {
     pn_Surface s = pn_surface(pixel);
-    pn_ShadedPoint r = pn_shaded_point(0, s.p, s.error, s.n, s.sigma);
+    pn_ShadedPoint r = pn_shaded_surface(0, s);
     if (!pn_unlit(0, r)) {
       float above = pn_area_above(pn_extent(0), r.n.xy, r.k);
       if (above > 0.0) hidden = min(pn_hidden(r, pn_is_parallel(0)) / above, 1.0);

@@ -79,7 +79,7 @@ static pn_result draw_layer(const pni_job *job, pni_seen *seen, int layer) {
                    .height = w->height};
   pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
-  pni_receiver_uniforms(job->receiver, job->frame, &job->maps->rounding, 1);
+  pni_receiver_uniforms(job->receiver, job->frame, job->emission, &job->maps->rounding, 1);
   pni_seen_set(gpu, seen);
   pni_set_ints(gpu, "pn_layer", layer - 1, 0, 0, 0);
   const float depth[4] = {(float)w->w_least, (float)w->w_most, (float)w->width, (float)w->height};

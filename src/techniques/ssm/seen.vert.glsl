@@ -22,7 +22,7 @@ float pn_plane_error(pn_Surface s, vec3 m, float k, bool sun) {
   vec2 lever = pn_search_window(pn_extent(0), near, m.z);
   float scale = sun ? 1.0 : m.z, reach = sun ? 1.0 : length(s.p);
   vec2 texel = max(pn_texel_size(0), 1.0 / pn_seen_bounds.zw);
-  return scale * dot(abs(s.n), s.error) + abs(k) * map_error + max(texel.x, texel.y) +
+  return scale * (dot(abs(s.n), s.error) + s.lift) + abs(k) * map_error + max(texel.x, texel.y) +
          (s.sigma + 1e-6) * (lever.x + lever.y + reach * max(near - m.z, 0.0));
 }
 
@@ -48,6 +48,8 @@ void main() {
   float w = m.z + pn_seen_rise(s.n.xy, k, off, 4.0 * thickness);
   pn_texel = vec4(w, vec3(s.n.xy, k) / pn_plane_error(s, m, k, sun));
   // At its texel's centre: where a point on a border goes is then not the rasteriser's choice.
-  float depth = (pn_seen_depth.y - m.z) / (pn_seen_depth.y - pn_seen_depth.x);
+  // Whose plane is known speaks for the texel before who lies on the same surface and only knows bounds.
+  float nearness = m.z - (s.lift > 0.0 ? thickness : 0.0);
+  float depth = (pn_seen_depth.y - nearness) / (pn_seen_depth.y - pn_seen_depth.x);
   gl_Position = vec4(2.0 * centre / pn_seen_depth.zw - 1.0, 2.0 * clamp(depth, 0.0, 1.0) - 1.0, 1.0);
 }

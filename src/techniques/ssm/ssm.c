@@ -148,7 +148,7 @@ static pn_result look_up(const pni_ssm_scattering *s, pni_target target) {
   pass.channels = target.channels;
   pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
-  pni_receiver_uniforms(job->receiver, job->frame, &job->maps->rounding, 1);
+  pni_receiver_uniforms(job->receiver, job->frame, job->emission, &job->maps->rounding, 1);
   pni_seen_set(gpu, &s->state->seen);
   pni_set_ints(gpu, "pn_layer", s->state->seen.want.layers, pni_want_layers(&job->maps->want), 0, 0);
   pni_set_texture(gpu, "pn_soft", s->soft);
