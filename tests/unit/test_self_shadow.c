@@ -10,19 +10,25 @@
 
 #include "stage.h"
 
+/* What the library is given of normals. In eight bits they are off by half a degree. */
+typedef enum { NORMALS_NONE, NORMALS_FLOAT, NORMALS_BYTES, NORMALS_OCTAHEDRON, NORMALS_KINDS } normal_kind;
+static const char *const normal_names[] = {"no normals", "normals", "normals of 8 bits",
+                                           "octahedral normals of 8 bits"};
+
 typedef struct {
   const char *technique;
-  bool sheet, sun, normals, reversed, orthographic;
+  bool sheet, sun, reversed, orthographic;
+  normal_kind normals;
   GLenum depth_format;
   double tilt, size, aspect, distance; /* degrees; half extent of the light and distance, in sizes of the solid */
   int map;
 } configuration;
 
 static void describe(const configuration *c, char out[256]) {
-  snprintf(out, 256, "%s, %s tilted by %g, %s of half extents %g and %g at %g, map %d, %s%s, depth 0x%x%s",
+  snprintf(out, 256, "%s, %s tilted by %g, %s of half extents %g and %g at %g, map %d, %s, %s, depth 0x%x%s",
            c->technique, c->sheet ? "sheet" : "block", c->tilt, c->sun ? "sun" : "rectangle", c->size,
            c->size * c->aspect, c->distance, c->map, c->orthographic ? "orthographic" : "perspective",
-           c->normals ? " with normals" : "", c->depth_format, c->reversed ? " reversed" : "");
+           normal_names[c->normals], c->depth_format, c->reversed ? " reversed" : "");
 }
 
 /* The solid has one face whose normal is the tilt away from the direction to the light, turned about it at random. */
@@ -59,6 +65,51 @@ static camera camera_near(const configuration *c, vec towards, uint64_t *seed) {
   return k;
 }
 
+/* ---- normals ----------------------------------------------------------------------------------------------------- */
+
+/* The octahedral map: |x| + |y| + |z| = 1 flattened along z, its lower half folded outwards over the edges. */
+static void to_octahedron(vec n, float out[2]) {
+  double size = fabs(n.x) + fabs(n.y) + fabs(n.z), x = n.x / size, y = n.y / size;
+  out[0] = (float)(n.z >= 0 ? x : (1 - fabs(y)) * (x < 0 ? -1 : 1));
+  out[1] = (float)(n.z >= 0 ? y : (1 - fabs(x)) * (y < 0 ? -1 : 1));
+}
+
+/* The view's normals in eight bits. */
+static GLuint encoded_normals(const view *v, bool octahedron) {
+  int width = v->camera.width, height = v->camera.height, channels = octahedron ? 2 : 4;
+  float *texels = calloc((size_t)(width * height), (size_t)channels * sizeof *texels);
+  assert_non_null(texels);
+  for (int i = 0; i < width * height; i++) {
+    float *to = texels + channels * i;
+    if (v->shown[i] < 0) continue;
+    vec n = view_normal(v, i % width, i / width);
+    if (octahedron) to_octahedron(n, to);
+    else to[0] = (float)(n.x / 2 + 0.5), to[1] = (float)(n.y / 2 + 0.5), to[2] = (float)(n.z / 2 + 0.5);
+  }
+  GLuint texture;
+  glGenTextures(1, &texture);
+  glBindTexture(GL_TEXTURE_2D, texture);
+  glTexImage2D(GL_TEXTURE_2D, 0, octahedron ? GL_RG8_SNORM : GL_RGBA8, width, height, 0, octahedron ? GL_RG : GL_RGBA,
+               GL_FLOAT, texels);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+  free(texels);
+  return texture;
+}
+
+/* The texture made for it, or 0. */
+static GLuint receive(stage *s, const view *v, normal_kind kind) {
+  pn_receiver_desc desc = view_desc(v, kind == NORMALS_FLOAT);
+  GLuint made = kind > NORMALS_FLOAT ? encoded_normals(v, kind == NORMALS_OCTAHEDRON) : 0;
+  if (made) {
+    desc.normal_texture = made;
+    desc.normal_encoding = kind == NORMALS_BYTES ? PN_NORMAL_UNSIGNED : PN_NORMAL_OCTAHEDRON;
+  }
+  assert_ok(pn_receiver_set(s->receiver, &desc));
+  return made;
+}
+
+/* ---- pixels ------------------------------------------------------------------------------------------------------ */
+
 typedef struct {
   int lit, dark, edge;
   float least;
@@ -92,7 +143,7 @@ static count look(const configuration *c, uint64_t *seed) {
   stage s;
   stage_open(&s);
   stage_cast(&s, &solid);
-  stage_receive(&s, &v, c->normals);
+  GLuint encoded = receive(&s, &v, c->normals);
   pn_light_desc light =
       c->sun ? sun_along(mul(-1, towards), fmin(c->size, 1), fmin(c->size * c->aspect, 1), c->map)
              : light_at(mul(c->distance, towards), mul(-1, towards), c->size, c->size * c->aspect, c->map);
@@ -102,6 +153,7 @@ static count look(const configuration *c, uint64_t *seed) {
   count_pixels(&v, visibility, &axes, &found);
   free(visibility);
   stage_close(&s);
+  glDeleteTextures(1, &encoded);
   view_free(&v);
   soup_free(&solid);
   return found;
@@ -115,7 +167,7 @@ static configuration pick(const char *technique, uint64_t *seed) {
   configuration c = {.technique = technique,
                      .sheet = random_bits(seed) & 1,
                      .sun = random_bits(seed) & 1,
-                     .normals = random_bits(seed) & 1,
+                     .normals = (normal_kind)(random_bits(seed) % NORMALS_KINDS),
                      .orthographic = random_bits(seed) % 4 == 0};
   c.depth_format = random_bits(seed) & 1 ? GL_DEPTH_COMPONENT24 : GL_DEPTH_COMPONENT32F;
   c.reversed = c.depth_format == GL_DEPTH_COMPONENT32F && (random_bits(seed) & 1) &&
