@@ -222,7 +222,8 @@ static void test_every_technique(void **state) {
 
 static void test_variants(void **state) {
   (void)state;
-  static const char *const specs[] = {"pcf:filter=bicubic", "pcf:taps=16", "pcss:samples=3"};
+  static const char *const specs[] = {"pcf:filter=bicubic", "pcf:taps=16", "pcss:samples=3", "bitmask:merge=0,cap=6",
+                                      "backprojection:merge=0,cap=6"};
   int failures = 0;
   for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) failures += failures_of(specs[i]);
   assert_int_equal(failures, 0);
