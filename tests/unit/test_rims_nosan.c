@@ -81,17 +81,16 @@ static pn_light_desc light_of(const setting *c) {
   return c->sun ? sun_along(way, 0.05, 0.05, 512) : light_at(from, way, 0.2, 0.2, 512);
 }
 
-static float *visibility_of(const setting *c, const shape *s, const view *v, bool normals) {
-  stage st;
-  stage_open(&st);
+static float *visibility_of(stage *st, const setting *c, const shape *s, const view *v, bool normals) {
   soup casts = make_shape(s);
   if (c->plate) soup_box(&casts, v3(-2, 1.95, -1.2), v3(1.2, 2.05, 2));
-  stage_cast(&st, &casts);
-  stage_receive(&st, v, normals);
+  pn_casters_destroy(&st->casters);
+  assert_ok(pn_casters_create(st->context, &st->casters));
+  stage_cast(st, &casts);
+  stage_receive(st, v, normals);
   pn_light_desc light = light_of(c);
-  float *out = stage_visibility(&st, &light, c->spec);
+  float *out = stage_visibility(st, &light, c->spec);
   soup_free(&casts);
-  stage_close(&st);
   return out;
 }
 
@@ -101,7 +100,7 @@ typedef struct {
 } tally;
 
 /* By how much light is off, over the pixels that face the whole light. */
-static tally look(const setting *c, const shape *s) {
+static tally look(stage *st, const setting *c, const shape *s) {
   soup surfaces = make_shape(s);
   camera k = camera_of(c);
   view v;
@@ -110,7 +109,7 @@ static tally look(const setting *c, const shape *s) {
   light_axes axes = axes_of(&light);
   tally out = {0};
   for (int normals = 0; normals < 2; normals++) {
-    float *visibility = visibility_of(c, s, &v, normals);
+    float *visibility = visibility_of(st, c, s, &v, normals);
     for (int i = 0; i < SIZE * SIZE; i++) {
       int x = i % SIZE, y = i / SIZE;
       if (view_shown(&v, x, y) < 0) continue;
@@ -136,8 +135,8 @@ static tally look(const setting *c, const shape *s) {
 
 /* Light that is wrong by more than a tenth shows. From depth none of it may be that with normals is right; where wires
  * shade each other, an error may be 1.25 times as large, plus 0.002. */
-static void check(const setting *c, const shape *s, int allowed) {
-  tally t = look(c, s);
+static void check(stage *st, const setting *c, const shape *s, int allowed) {
+  tally t = look(st, c, s);
   assert_true(t.facing > 1000);
   assert_true(t.wrong[0] <= 1.25 * t.wrong[1] + allowed);
   assert_true(t.sum[0] <= 1.25 * t.sum[1] + 0.002 * t.facing);
@@ -145,14 +144,18 @@ static void check(const setting *c, const shape *s, int allowed) {
 
 static void test_default(void **state) {
   (void)state;
+  stage st; /* one for all: compiling takes longer than looking */
+  stage_open(&st);
   for (int i = 0; i < 8; i++)
     for (int s = i / 4; s < SHAPES; s += i < 4 ? 1 : 3) /* orthographic: two of them */
-      check(&(setting){.spec = "bitmask",
+      check(&st,
+            &(setting){.spec = "bitmask",
                        .plate = i & 1,
                        .sun = i & 2,
                        .orthographic = i & 4,
                        .depth_format = s & 1 ? GL_DEPTH_COMPONENT32F : GL_DEPTH_COMPONENT24},
             &shapes[s], 0);
+  stage_close(&st);
 }
 
 /* Where two faces meet right in a pixel, a technique without partial values is off by a whole pixel: of each picture
@@ -162,11 +165,15 @@ static void test_every_technique(void **state) {
   static const int some[] = {2, 5};
   for (int i = 0; i < pn_technique_count(); i++) {
     const char *name = pn_technique_at(i)->name;
+    stage st;
+    stage_open(&st);
     for (int k = 0; k < 4; k++)
-      check(&(setting){.spec = !strcmp(name, "average") ? "average:samples=4" : name,
+      check(&st,
+            &(setting){.spec = !strcmp(name, "average") ? "average:samples=4" : name,
                        .plate = k & 1,
                        .depth_format = GL_DEPTH_COMPONENT24},
             &shapes[some[k / 2]], 5);
+    stage_close(&st);
   }
 }
 

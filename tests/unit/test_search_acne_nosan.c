@@ -110,7 +110,7 @@ static void test_bitmask(void **state) {
                                      "merge=0,cap=4,hierarchy=mssm"};
   const char *longer = getenv("PENUMBRA_TEST_ROUNDS");
   failures = 0;
-  for (int i = 0; i < 14; i++) {
+  for (int i = 0; i < (longer ? 14 : 8); i++) {
     char spec[160];
     snprintf(spec, sizeof spec, "bitmask:samples=%s,primitive=%s,maps=%s,edges=%s,%s", NEXT(samples, 1),
              NEXT(primitives, 1), NEXT(maps, 2), NEXT(edges, 3), NEXT(ways, 1));
