@@ -37,20 +37,34 @@ static void add_wires(soup *out, vec centre, double half_width) {
   }
 }
 
+/* Small leaves in any direction, about two pixels wide. */
+static void add_leaves(soup *out, vec centre, double size) {
+  uint64_t seed = 3;
+  for (int i = 0; i < 1500; i++) {
+    vec a = random_direction(&seed), b = unit(cross(a, random_direction(&seed)));
+    soup_patch(out, add(centre, random_point(&seed, 0.5)), mul(size, a), mul(size, b));
+  }
+}
+
 typedef struct {
   const char *name;
-  int around, up;    /* of a sphere; 0: wires */
-  double half_width; /* of wires */
+  int around, up;    /* of a sphere; 0: wires, or leaves */
+  double half_width; /* of wires, of leaves */
+  bool leaves;
 } shape;
 
-static const shape shapes[] = {{"sphere of 12 x 8", 12, 8, 0},      {"sphere of 24 x 12", 24, 12, 0},
-                               {"sphere of 48 x 24", 48, 24, 0},    {"sphere of 200 x 100", 200, 100, 0},
-                               {"wires of one pixel", 0, 0, 0.004}, {"wires of two pixels", 0, 0, 0.008}};
+static const shape shapes[] = {
+    {.name = "sphere of 12 x 8", .around = 12, .up = 8},    {.name = "sphere of 24 x 12", .around = 24, .up = 12},
+    {.name = "sphere of 48 x 24", .around = 48, .up = 24},  {.name = "sphere of 200 x 100", .around = 200, .up = 100},
+    {.name = "wires of one pixel", .half_width = 0.004},    {.name = "wires of two pixels", .half_width = 0.008},
+    {.name = "leaves", .half_width = 0.01, .leaves = true},
+};
 enum { SHAPES = sizeof shapes / sizeof *shapes };
 
 static soup make_shape(const shape *s) {
   soup out = {0};
   if (s->around) add_sphere(&out, v3(0, 0.6, 0), 0.6, s->around, s->up);
+  else if (s->leaves) add_leaves(&out, v3(0, 0.6, 0), s->half_width);
   else add_wires(&out, v3(0, 0.6, 0), s->half_width);
   return out;
 }
@@ -154,7 +168,7 @@ static void test_default(void **state) {
                        .sun = i & 2,
                        .orthographic = i & 4,
                        .depth_format = s & 1 ? GL_DEPTH_COMPONENT32F : GL_DEPTH_COMPONENT24},
-            &shapes[s], 0);
+            &shapes[s], shapes[s].leaves ? 2 : 0); /* of 2500, each perhaps of another leaf than its neighbours */
   stage_close(&st);
 }
 
