@@ -168,7 +168,7 @@ static void test_default(void **state) {
                        .sun = i & 2,
                        .orthographic = i & 4,
                        .depth_format = s & 1 ? GL_DEPTH_COMPONENT32F : GL_DEPTH_COMPONENT24},
-            &shapes[s], shapes[s].leaves ? 2 : 0); /* of 2500, each perhaps of another leaf than its neighbours */
+            &shapes[s], shapes[s].leaves ? 1 : 0); /* of 2500, each perhaps of another leaf than its neighbours */
   stage_close(&st);
 }
 

@@ -60,7 +60,7 @@ static void test_steps(void **state) {
   (void)state;
   for (int scale = 2; scale <= 4; scale *= 2) {
     over_ground c = {0};
-    soup_patch(&c.casters, v3(2.5, 0.08, 0), v3(2.5, 0, 0.2), v3(-0.4, 0, 5));
+    soup_patch(&c.casters, v3(2.5, 0.03, 0), v3(2.5, 0, 0.2), v3(-0.4, 0, 5));
     over_ground_open(&c, SIZE, 0.5);
     pn_light_desc light = light_over_ground(1, 1, 1024);
     float *full = look(&c, &light, 1), *low = look(&c, &light, scale);
