@@ -39,7 +39,8 @@ static void close_scene(scene *c) {
   soup_free(&c->plane);
 }
 
-/* Visibility with every tenth pixel of every third row, and of the view's borders, farther by so many steps of depth. */
+/* Visibility with every tenth pixel of every sixth row, and of the view's borders, farther by so many steps of
+ * depth. */
 static float *look(scene *c, int steps) {
   float *depths = malloc((size_t)(SIZE * SIZE) * sizeof *depths);
   assert_non_null(depths);
