@@ -24,6 +24,37 @@ struct pn_Window {
   vec4 w;           // the range there (pn_join_ranges)
 };
 
+// A layer of a map, beside the receiver: read once, since loops that read what an index picks anew in each turn are
+// slow.
+struct pn_Sheet {
+  vec2 corner;      // (s, t) of a block's corner at texel (0, 0), relative to the receiver
+  vec2 texel;       // size, in s and t
+  vec2 density;     // texels per unit of s, of t
+  vec2 dw_of_depth; // w at depth 0, relative to the receiver; w per depth
+  ivec2 size;       // texels
+  int image;        // in the array of images
+};
+
+// Where a block's primitives begin and end: at texel borders, or for quads at texel centres.
+#if PN_PRIMITIVE == PN_PATCH
+#define PN_BLOCK_CORNER 0.0
+#else
+#define PN_BLOCK_CORNER 0.5
+#endif
+
+pn_Sheet pn_sheet(int light, pn_ShadedPoint r, int map, int layer) {
+  pn_Sheet s;
+  s.texel = pn_map_texel_size(light, map);
+  s.density = pn_lights[light].maps[map].density;
+  s.corner = pn_map_st(light, map, vec2(PN_BLOCK_CORNER)) - r.m.xy;
+  s.dw_of_depth = pn_lights[light].maps[map].w_of_depth - vec2(r.m.z, 0.0);
+  s.size = pn_map_size(light, map);
+  s.image = pn_array_layer(light, map, layer);
+  return s;
+}
+
+vec2 pn_block_at(pn_Sheet s, ivec2 texel) { return s.corner + vec2(texel) * s.texel; }
+
 // ---- plane rejection over a box of (s, t, w), relative to the receiver ---------------------------------------------
 
 // Least and greatest pn_plane_front, with the receiver's own uncertainty taken off and added.
@@ -44,11 +75,11 @@ vec2 pn_front_range(pn_ShadedPoint r, vec2 low, vec2 high, float dw_least, float
 #if PN_PRIMITIVE != PN_PATCH
 // Whether no light passes between what lies at dw_near and what is seen beside it, down to dw_far, in a box of (s, t)
 // relative to the receiver: from there the nearer surface's edge falls on the farther one by no more than that one is
-// known to go on behind it. gaps: of the box, see maps/gaps.glsl.
-bool pn_goes_on(int light, int map, vec2 low, vec2 high, float dw_far, float dw_near, float gaps) {
+// known to go on behind it. far: dw_far in parts of dw_near; gaps: of the box, see maps/gaps.glsl.
+bool pn_goes_on(vec2 density, vec2 low, vec2 high, float far, float gaps) {
   if (gaps >= PN_ENDLESS_REACH) return true;
-  vec2 lever = max(abs(low), abs(high)) * pn_lights[light].maps[map].density;
-  return max(lever.x, lever.y) * (1.0 - dw_far / dw_near) <= pn_gap_reach(gaps);
+  vec2 lever = max(abs(low), abs(high)) * density;
+  return max(lever.x, lever.y) * (1.0 - far) <= pn_gap_reach(gaps);
 }
 
 
@@ -128,20 +159,19 @@ vec2 pn_edge(float scale, float near, float far, vec2 corners, vec2 inverse) {
 
 // The primitive of a block's four corner samples, or the next part of it. gaps: PN_NO_GAP too where no light passes
 // through them; left: corners not taken yet, those that hide nothing among them.
-pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 first, ivec2 last,
+pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, pn_Sheet sheet, ivec2 first, ivec2 last,
                 float gaps, inout int left) {
-  int array_layer = pn_array_layer(light, map, layer);
-  ivec2 size = pn_map_size(light, map), end = min(last, size - 1);
-  vec4 depth = vec4(texelFetch(maps, ivec3(first, array_layer), 0).r,
-                    texelFetch(maps, ivec3(end.x, first.y, array_layer), 0).r,
-                    texelFetch(maps, ivec3(first.x, end.y, array_layer), 0).r,
-                    texelFetch(maps, ivec3(end, array_layer), 0).r);
-  vec2 w_of_depth = pn_lights[light].maps[map].w_of_depth;
-  vec4 dw = w_of_depth.x + w_of_depth.y * depth - r.m.z;
-  vec2 low = pn_map_st(light, map, vec2(first) + 0.5) - r.m.xy, high = pn_map_st(light, map, vec2(last) + 0.5) - r.m.xy;
+  ivec2 end = min(last, sheet.size - 1);
+  vec4 depth = vec4(texelFetch(maps, ivec3(first, sheet.image), 0).r,
+                    texelFetch(maps, ivec3(end.x, first.y, sheet.image), 0).r,
+                    texelFetch(maps, ivec3(first.x, end.y, sheet.image), 0).r,
+                    texelFetch(maps, ivec3(end, sheet.image), 0).r);
+  vec4 dw = sheet.dw_of_depth.x + sheet.dw_of_depth.y * depth;
+  vec2 low = pn_block_at(sheet, first), high = pn_block_at(sheet, last);
   vec4 s = vec4(low.x, high.x, low.x, high.x), t = vec4(low.y, low.y, high.y, high.y);
   vec4 front = r.n.x * s + r.n.y * t - r.k * dw - r.epsilon_plane - r.sigma * (abs(s) + abs(t) + r.reach * abs(dw));
-  bvec4 outside = bvec4(false, last.x >= size.x, last.y >= size.y, last.x >= size.x || last.y >= size.y);
+  bvec2 past = greaterThanEqual(last, sheet.size);
+  bvec4 outside = bvec4(false, past.x, past.y, past.x || past.y);
   vec4 there = vec4(greaterThan(dw, vec4(r.epsilon_w))) * vec4(lessThan(depth, vec4(1.0))) *
                vec4(greaterThan(depth, vec4(0.0))) * (1.0 - vec4(outside));
   vec4 hide = there * vec4(greaterThan(front, vec4(0.0)));
@@ -182,10 +212,10 @@ void pn_texel_quad(int light, highp sampler2DArray maps, highp sampler2DArray ra
     left = 0;
     return;
   }
-  vec2 low = pn_map_st(light, map, vec2(texel) + 0.5) - r.m.xy;
-  vec2 high = pn_map_st(light, map, vec2(texel) + 1.5) - r.m.xy;
-  bool bridged = pn_goes_on(light, map, low, high, max(w.z - r.m.z, r.epsilon_w), w.x - r.m.z, w.w);
-  pn_Quad q = pn_quad(light, maps, r, map, layer, texel, texel + 1, bridged ? PN_NO_GAP : w.w, left);
+  pn_Sheet sheet = pn_sheet(light, r, map, layer);
+  vec2 low = pn_block_at(sheet, texel), high = pn_block_at(sheet, texel + 1);
+  bool bridged = pn_goes_on(sheet.density, low, high, max(w.z - r.m.z, r.epsilon_w) / (w.x - r.m.z), w.w);
+  pn_Quad q = pn_quad(light, maps, r, sheet, texel, texel + 1, bridged ? PN_NO_GAP : w.w, left);
   if (!q.some) return;
   if (q.whole)
     pn_cover_quad(c, q);
@@ -195,14 +225,7 @@ void pn_texel_quad(int light, highp sampler2DArray maps, highp sampler2DArray ra
 }
 #endif
 
-// Where a block's primitives begin and end: at texel borders, or for quads at texel centres.
-vec2 pn_block_st(int light, int map, ivec2 texel) {
-#if PN_PRIMITIVE == PN_PATCH
-  return pn_map_st(light, map, vec2(texel));
-#else
-  return pn_map_st(light, map, vec2(texel) + 0.5);
-#endif
-}
+vec2 pn_block_st(int light, int map, ivec2 texel) { return pn_map_st(light, map, vec2(texel) + PN_BLOCK_CORNER); }
 
 // ---- the window ----------------------------------------------------------------------------------------------------
 
@@ -210,11 +233,7 @@ vec2 pn_block_st(int light, int map, ivec2 texel) {
 void pn_window_texels(int light, pn_ShadedPoint r, int map, float w, out ivec2 low, out ivec2 high) {
   vec2 window = pn_search_window(pn_extent(light), w, r.m.z);
   int border = pn_map_count(light) > 1 ? 1 : 0;
-#if PN_PRIMITIVE == PN_PATCH
-  const float shift = 0.0;
-#else
-  const float shift = 0.5; // a quad lies between the centres of its texel and the next
-#endif
+  const float shift = PN_BLOCK_CORNER; // a quad lies between the centres of its texel and the next
   low = max(ivec2(floor(pn_map_texel(light, map, r.m.xy - window) - shift)), ivec2(border));
   high = min(ivec2(floor(pn_map_texel(light, map, r.m.xy + window) - shift)), pn_map_size(light, map) - 1 - border);
 }
@@ -277,7 +296,8 @@ bool pn_is_umbra(int light, pn_ShadedPoint r, int map, pn_Window window) {
   // not cut off by the map's border
   bool inside = all(lessThanEqual(low, -reach)) && all(greaterThanEqual(high, reach));
 #if PN_PRIMITIVE != PN_PATCH
-  inside = inside && pn_goes_on(light, map, low, high, window.w.y - r.m.z, window.w.x - r.m.z, window.w.w);
+  float far = (window.w.y - r.m.z) / (window.w.x - r.m.z);
+  inside = inside && pn_goes_on(pn_lights[light].maps[map].density, low, high, far, window.w.w);
 #endif
   return inside && pn_front_range(r, low, high, window.w.y - r.m.z, window.w.x - r.m.z).x > 0.0;
 }
@@ -376,13 +396,12 @@ struct pn_Walk {
 // One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Wherever in its range the
 // surface lies, it hides no more than the hull of the block's projections at both ends of the range, and, where it has
 // neither hole nor gap, no less than what both have in common.
-int pn_visit_block(int light, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, float merge,
+int pn_visit_block(int light, highp sampler2DArray range, pn_ShadedPoint r, pn_Sheet sheet, float merge,
                    inout pn_Walk walk, inout pn_Cover c) {
-  vec4 block = texelFetch(range, ivec3(walk.node, pn_array_layer(light, map, layer)), walk.level);
+  vec4 block = texelFetch(range, ivec3(walk.node, sheet.image), walk.level);
   vec3 dw = block.rgb - r.m.z; // largest, smallest, that of what is there
   vec2 extent = pn_extent(light);
-  vec2 low = pn_block_st(light, map, walk.node << walk.level) - r.m.xy;
-  vec2 high = pn_block_st(light, map, (walk.node + 1) << walk.level) - r.m.xy;
+  vec2 low = pn_block_at(sheet, walk.node << walk.level), high = pn_block_at(sheet, (walk.node + 1) << walk.level);
   bool beside = any(greaterThan(low, extent * dw.x)) || any(lessThan(high, -extent * dw.x));
 #if PN_PRIMITIVE == PN_PATCH
   // A single texel is asked at its centre, as the sample it is.
@@ -398,16 +417,17 @@ int pn_visit_block(int light, highp sampler2DArray range, pn_ShadedPoint r, int 
   // not nearer, not before the light, or behind the tangent plane
   if (dw.x <= r.epsilon_w || beside || front.y <= rise) return PN_SKIP;
   // Where the block's edges fall on the light, at its nearest and at its farthest.
-  vec2 scale = 0.5 / extent;
-  vec2 a0 = clamp(0.5 + scale * low / dw.x, 0.0, 1.0), a1 = clamp(0.5 + scale * low / dw_least, 0.0, 1.0);
-  vec2 b0 = clamp(0.5 + scale * high / dw.x, 0.0, 1.0), b1 = clamp(0.5 + scale * high / dw_least, 0.0, 1.0);
+  vec2 inverse = 1.0 / vec2(dw.x, dw_least), half_low = 0.5 * low / extent, half_high = 0.5 * high / extent;
+  vec2 a0 = clamp(0.5 + half_low * inverse.x, 0.0, 1.0), a1 = clamp(0.5 + half_low * inverse.y, 0.0, 1.0);
+  vec2 b0 = clamp(0.5 + half_high * inverse.x, 0.0, 1.0), b1 = clamp(0.5 + half_high * inverse.y, 0.0, 1.0);
   vec2 moved = max(abs(a0 - a1), abs(b0 - b1));
 #if PN_PRIMITIVE == PN_PATCH
   const bool bridged = true;
 #else
   // Inside the block edges may fall on the light where those of the block are beside it.
-  vec2 shift = scale * max(abs(low), abs(high)) * (1.0 / dw_least - 1.0 / dw.x);
-  bool bridged = max(shift.x, shift.y) <= merge || pn_goes_on(light, map, low, high, dw_least, dw.x, block.w);
+  vec2 shift = max(abs(half_low), abs(half_high)) * (inverse.y - inverse.x);
+  bool bridged =
+      max(shift.x, shift.y) <= merge || pn_goes_on(sheet.density, low, high, dw_least * inverse.x, block.w);
 #endif
   bool solid = dw.y > r.epsilon_w && front.x > rise && bridged;
   bool one = solid && max(moved.x, moved.y) <= merge;
@@ -424,8 +444,9 @@ int pn_visit_block(int light, highp sampler2DArray range, pn_ShadedPoint r, int 
 #else
   // A block without gaps that is itself no larger on the light than what may be moved is looked at no closer: its
   // corners stand for it, as a texel's do.
-  vec2 size = scale * (high - low) / max(dw.y, r.epsilon_w);
-  bool leaf = walk.level == 0 || pn_search_turns >= PN_TURNS || bridged && max(size.x, size.y) <= merge;
+  vec2 size = half_high - half_low;
+  bool leaf = walk.level == 0 || pn_search_turns >= PN_TURNS ||
+              bridged && max(size.x, size.y) <= merge * max(dw.y, r.epsilon_w);
   if (pn_cover_and_ask(c, least.low, least.high, most.low, most.high, false)) return PN_SKIP;
   if (!leaf && !one) return PN_DOWN;
   walk.left = PN_ALL_CORNERS;
@@ -455,14 +476,14 @@ void pn_walk(inout pn_Walk walk, bool down) {
   walk.going = walk.node.y <= walk.last.y;
 }
 
-void pn_visit(int light, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, float merge,
+void pn_visit(int light, highp sampler2DArray range, pn_ShadedPoint r, pn_Sheet sheet, float merge,
               inout pn_Walk walk, inout pn_Cover c) {
   if (!walk.going || walk.left != 0) return;
   pn_search_done.y += 1.0;
-  int what = pn_visit_block(light, range, r, map, layer, merge, walk, c);
+  int what = pn_visit_block(light, range, r, sheet, merge, walk, c);
   if (what != PN_STAY) pn_walk(walk, what == PN_DOWN);
 }
-#define PN_VISIT pn_visit(light, range, r, map, layer, merge, walk, c);
+#define PN_VISIT pn_visit(light, range, r, sheet, merge, walk, c);
 
 #if PN_PRIMITIVE != PN_PATCH
 // A merged block's edges, each at the mean of two corners, do not meet the smaller primitives beside it, whose edges
@@ -473,10 +494,10 @@ void pn_spread(inout pn_Quad q) {
 }
 
 // Covers the primitive that a visit left, or the next part of it; true where that is to be done exactly, row by row.
-bool pn_take_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, inout pn_Walk walk,
+bool pn_take_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, pn_Sheet sheet, inout pn_Walk walk,
                   inout pn_Cover c, out pn_Quad quad) {
   ivec2 first = walk.node << walk.level, last = (walk.node + 1) << walk.level;
-  quad = pn_quad(light, maps, r, map, layer, first, last, walk.gaps, walk.left);
+  quad = pn_quad(light, maps, r, sheet, first, last, walk.gaps, walk.left);
   if (walk.left == 0) pn_walk(walk, false);
   if (!quad.some) return false;
 #if PN_PRIMITIVE == PN_QUAD_EXACT
@@ -498,6 +519,7 @@ bool pn_take_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, int ma
 void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer,
                 pn_Window window, float merge, inout pn_Cover c) {
   int extent = max(window.high.x - window.low.x, window.high.y - window.low.y);
+  pn_Sheet sheet = pn_sheet(light, r, map, layer);
   pn_Walk walk;
   walk.top = 0;
   while ((extent >> walk.top) > 2) walk.top++;
@@ -519,7 +541,7 @@ void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range
 #endif
     PN_VISIT PN_VISIT PN_VISIT PN_VISIT
 #if PN_PRIMITIVE != PN_PATCH
-    if (walk.left != 0 && pn_take_quad(light, maps, r, map, layer, walk, c, quad)) {
+    if (walk.left != 0 && pn_take_quad(light, maps, r, sheet, walk, c, quad)) {
 #if PN_PRIMITIVE == PN_QUAD_EXACT
       rows = pn_quad_rows(quad);
 #endif
