@@ -8,6 +8,12 @@
 #include "gl/label.h"
 #include "gl/source.h"
 
+/* Gathers of four texels where there are any: shaders ask for PN_GATHER. */
+static const char *const prelude = "#version 330 core\n"
+                                   "#ifdef GL_ARB_texture_gather\n"
+                                   "#extension GL_ARB_texture_gather : enable\n"
+                                   "#define PN_GATHER 1\n"
+                                   "#endif\n";
 static const char *const screen_vertices = "shaders/screen.vert.glsl";
 
 /* ---- compiling --------------------------------------------------------------------------------------------------- */
@@ -18,7 +24,7 @@ static pn_result compile(pni_gpu *gpu, GLenum stage, const char *path, const cha
   const char *paths[] = {path, more, NULL};
   pn_result result = pni_shader_text(gpu, paths, defines, &text);
   if (result != PN_OK) return result;
-  const char *parts[] = {"#version 330 core\n", text};
+  const char *parts[] = {prelude, text};
   pn_gl shader = GL(gpu, CreateShader)(stage);
   GL(gpu, ShaderSource)(shader, 2, parts, NULL);
   GL(gpu, CompileShader)(shader);

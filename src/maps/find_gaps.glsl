@@ -3,6 +3,8 @@
 #include "maps/gaps.glsl"
 
 // Layer of the map that has what lies behind this one; -1: others have it all as surfaces of their own, -2: not known.
+// And how many looks it takes to be sure that it goes on without end: a number that compilers do not know, because
+// they would make one long piece of the loop, and nearly all quads leave it at once.
 uniform ivec4 pn_behind;
 
 // Slack of a step in w from one texel to the next, for a surface that turns by 45 degrees there, and for rounding.
@@ -21,16 +23,30 @@ bool pn_is_gap(vec4 w, float slack) {
   return steps.y < min(a, b) - turn || steps.y > max(a, b) + turn;
 }
 
-// How many texels what lies at w_far goes on from texel far towards near and beyond, behind what lies at w_near.
-float pn_hidden(int light, highp sampler2DArray maps, int map, ivec2 far, ivec2 near, float w_far, float w_near) {
+// From the nearer to the farther sample beside gap i of a quad: first texel, direction, w halfway.
+void pn_beside_gap(int i, ivec2 at, float w[16], out ivec2 far, out ivec2 near, out float middle) {
+  ivec2 first = at + (i == 1 ? ivec2(0, 1) : i == 3 ? ivec2(1, 0) : ivec2(0));
+  ivec2 second = first + (i < 2 ? ivec2(1, 0) : ivec2(0, 1));
+  float a = i == 1 ? w[9] : i == 3 ? w[6] : w[5], b = i == 0 ? w[6] : i == 2 ? w[9] : w[10];
+  far = a < b ? first : second;
+  near = a < b ? second : first;
+  middle = 0.5 * (a + b);
+}
+
+// How many texels what lies behind each of the gaps goes on, towards the nearer surface and behind it: the least of
+// them, so that the first look that finds nothing, of any, settles it.
+float pn_hidden(int light, highp sampler2DArray maps, int map, ivec2 at, float w[16], bvec4 gap) {
   if (pn_behind.x < 0) return pn_behind.x == -1 ? 0.0 : 255.0;
-  float reach = 0.0, middle = 0.5 * (w_far + w_near);
-  for (int step = 1; step <= 128; step *= 2) {
-    float w = pn_map_fetch(light, maps, map, pn_behind.x, far + step * (near - far));
-    if (w <= PN_NOTHING || w >= middle) break;
-    reach = float(2 * step - 1);
+  for (int look = 0; look < pn_behind.y; look++) {
+    int step = 1 << (look >> 2);
+    if (!gap[look & 3]) continue;
+    ivec2 far, near;
+    float middle;
+    pn_beside_gap(look & 3, at, w, far, near, middle);
+    float behind = pn_map_fetch(light, maps, map, pn_behind.x, far + step * (near - far));
+    if (behind <= PN_NOTHING || behind >= middle) return float(step - 1);
   }
-  return reach;
+  return 255.0;
 }
 
 // As pn_pack_gaps has it, for the quad of samples 5, 6, 9, 10 of a block of 4 x 4 (its corners are not looked at).
@@ -48,15 +64,5 @@ float pn_find_gaps(int light, highp sampler2DArray maps, int map, ivec2 at, floa
   if (!gap.y) parts.zw |= parts.wz;
   if (!gap.z) parts.xz |= parts.zx;
   if (!gap.w) parts.yw |= parts.wy;
-  float reach = 255.0;
-  for (int i = 0; i < 4; i++) {
-    if (!gap[i]) continue;
-    ivec2 step = i < 2 ? ivec2(1, 0) : ivec2(0, 1);
-    ivec2 first = at + (i == 1 ? ivec2(0, 1) : i == 3 ? ivec2(1, 0) : ivec2(0));
-    float a = i == 0 || i == 2 ? w[5] : i == 1 ? w[9] : w[6], b = i == 0 ? w[6] : i == 2 ? w[9] : w[10];
-    float hidden = a < b ? pn_hidden(light, maps, map, first, first + step, a, b)
-                         : pn_hidden(light, maps, map, first + step, first, b, a);
-    reach = min(reach, hidden);
-  }
-  return pn_pack_gaps(reach, parts);
+  return pn_pack_gaps(pn_hidden(light, maps, map, at, w, gap), parts);
 }

@@ -118,8 +118,9 @@ static int layer_behind(const pni_maps_want *want, int layer) {
 static void set_source(pni_gpu *gpu, const pni_maps *maps, int layer, int level) {
   int layers = pni_want_layers(&maps->want);
   pni_set_ints(gpu, "pn_source", layer, level, layer / layers, layer % layers);
+  enum { LOOKS = 4 * 8 }; /* at four gaps of a quad, in steps of 1, 2, 4 ... 128 texels */
   if (maps->want.range.quads && level == 0)
-    pni_set_ints(gpu, "pn_behind", layer_behind(&maps->want, layer % layers), 0, 0, 0);
+    pni_set_ints(gpu, "pn_behind", layer_behind(&maps->want, layer % layers), LOOKS, 0, 0);
 }
 
 static pn_result draw_first(pni_gpu *gpu, pni_maps *maps, int layer) {

@@ -25,11 +25,34 @@ float pn_there(float w) { return w > PN_NOTHING ? w : PN_EVERYTHING; }
 
 // Beyond the map nothing is, and the smallest w says so too.
 float pn_w_at(ivec2 at) { return pn_map_fetch(0, pn_maps, pn_source.z, pn_source.w, at); }
+float pn_w_of(ivec2 at, float depth) {
+  return pn_map_inside(0, pn_source.z, at) ? pn_map_w(0, pn_source.z, depth) : PN_NOTHING;
+}
 
 #if PN_QUADS
+// A block of 4 x 4 around a quad, but for its corners.
+#ifdef PN_GATHER
+void pn_block_of(ivec2 at, out float w[16]) {
+  float layer = float(pn_array_layer(0, pn_source.z, pn_source.w));
+  for (int i = 0; i < 4; i++) {
+    ivec2 part = ivec2(2 * (i & 1), i & 2), texel = at - 1 + part;
+    vec4 depth = textureGather(pn_maps, vec3(vec2(texel + 1) / vec2(textureSize(pn_maps, 0).xy), layer));
+    int first = 4 * part.y + part.x;
+    w[first] = pn_w_of(texel, depth.w);
+    w[first + 1] = pn_w_of(texel + ivec2(1, 0), depth.z);
+    w[first + 4] = pn_w_of(texel + ivec2(0, 1), depth.x);
+    w[first + 5] = pn_w_of(texel + 1, depth.y);
+  }
+}
+#else
+void pn_block_of(ivec2 at, out float w[16]) {
+  for (int i = 0; i < 16; i++) w[i] = (0x9009 >> i & 1) != 0 ? PN_NOTHING : pn_w_at(at + ivec2(i % 4, i / 4) - 1);
+}
+#endif
+
 vec4 pn_range_of(ivec2 at) {
   float w[16];
-  for (int i = 0; i < 16; i++) w[i] = (0x9009 >> i & 1) != 0 ? PN_NOTHING : pn_w_at(at + ivec2(i % 4, i / 4) - 1);
+  pn_block_of(at, w);
   vec4 corners = vec4(w[5], w[6], w[9], w[10]);
   vec2 two = max(corners.xy, corners.zw);
   if (max(two.x, two.y) <= PN_NOTHING) return vec4(PN_NOTHING, PN_NOTHING, PN_EVERYTHING, PN_NO_GAP);
