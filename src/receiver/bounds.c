@@ -4,7 +4,7 @@
 #include "gl/host.h"
 #include "receiver/patches.h"
 
-enum { BLOCK = 16 }; /* PN_BLOCK of bounds.frag.glsl */
+enum { BLOCK = 16 }; /* PN_BLOCK of bounds.frag.glsl, slopes.frag.glsl, patches.frag.glsl */
 
 /* Least and most, of one step. */
 static pn_result shape(pni_gpu *gpu, pni_texture images[2], int width, int height) {
@@ -70,25 +70,51 @@ pn_result pni_receiver_bounds(pn_receiver *receiver, const pni_frame *frame, pni
 /* Planes steeper than the light's window are never a bound; close to that they would be one far off only. */
 static const float steepest = 0.9f;
 
-static pn_result find_planes(pn_receiver *receiver, const pni_frame *frame, const double extent[2], const double *given,
-                             const pni_texture bounds[2], pni_texture *to) {
+enum { TRIED = 5 }; /* PN_TRIED of slopes.frag.glsl */
+
+/* A pass that looks at the view's pixels, to draw into an image. */
+static pn_result begin_pass(pn_receiver *receiver, const pni_frame *frame, const char *name,
+                            const pni_program_key *program, const pni_texture *to) {
   pni_gpu *gpu = &receiver->object.context->gpu;
-  pn_result result =
-      pni_texture_shape(gpu, to, "receiver planes below", PNI_RGBA32F, bounds->width, bounds->height, 0, 1);
-  if (result != PN_OK) return result;
-  char defines[64];
-  snprintf(defines, sizeof defines, "PN_MASK %d\nPN_GIVEN %d\n", receiver->desc.mask_texture != 0, given != NULL);
-  pni_pass pass = {.name = "receiver planes below",
-                   .program = {.fragment = "receiver/patches.frag.glsl", .defines = defines},
-                   .color = {pni_image_of(to, 0, 0)},
-                   .width = to->width,
-                   .height = to->height};
-  result = pni_pass_begin(gpu, &pass);
+  pni_pass pass = {
+      .name = name, .program = *program, .color = {pni_image_of(to, 0, 0)}, .width = to->width, .height = to->height};
+  pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
   pni_receiver_uniforms(receiver, frame, NULL, &(pni_rounding){0}, 1); /* what casters lose is the map's to add */
   pni_set_int(gpu, "pn_parallel", frame->projection == PNI_PARALLEL);
+  return PN_OK;
+}
+
+/* Slopes to try for each block. */
+static pn_result find_slopes(pn_receiver *receiver, const pni_frame *frame, const double extent[2]) {
+  pni_gpu *gpu = &receiver->object.context->gpu;
+  pni_texture *to = &receiver->slopes;
+  pn_result result = pni_texture_shape(gpu, to, "receiver slopes", PNI_RG32F, TRIED * blocks(receiver->desc.width),
+                                       blocks(receiver->desc.height), 0, 1);
+  char defines[32];
+  snprintf(defines, sizeof defines, "PN_MASK %d\n", receiver->desc.mask_texture != 0);
+  pni_program_key program = {.fragment = "receiver/slopes.frag.glsl", .defines = defines};
+  if (result == PN_OK) result = begin_pass(receiver, frame, "receiver slopes", &program, to);
+  if (result != PN_OK) return result;
+  pni_set_floats(gpu, "pn_window", (const float[4]){(float)extent[0], (float)extent[1], steepest});
+  pni_draw_screen(gpu);
+  return PN_OK;
+}
+
+/* given: slopes of all planes; NULL: those of find_slopes are tried. */
+static pn_result find_planes(pn_receiver *receiver, const pni_frame *frame, const double *given) {
+  pni_gpu *gpu = &receiver->object.context->gpu;
+  const pni_texture *bounds = receiver->bounds;
+  pni_texture *to = &receiver->below;
+  pn_result result =
+      pni_texture_shape(gpu, to, "receiver planes below", PNI_RGBA32F, bounds->width, bounds->height, 0, 1);
+  char defines[64];
+  snprintf(defines, sizeof defines, "PN_MASK %d\nPN_GIVEN %d\n", receiver->desc.mask_texture != 0, given != NULL);
+  pni_program_key program = {.fragment = "receiver/patches.frag.glsl", .defines = defines};
+  if (result == PN_OK) result = begin_pass(receiver, frame, "receiver planes below", &program, to);
+  if (result != PN_OK) return result;
   if (given) pni_set_floats(gpu, "pn_given", (const float[4]){(float)given[0], (float)given[1]});
-  else pni_set_floats(gpu, "pn_window", (const float[4]){(float)extent[0], (float)extent[1], steepest});
+  else pni_set_texture(gpu, "pn_tried", &receiver->slopes);
   pni_set_texture(gpu, "pn_least", &bounds[0]);
   pni_set_texture(gpu, "pn_most", &bounds[1]);
   pni_draw_screen(gpu);
@@ -119,13 +145,15 @@ static bool make_room(pni_gpu *gpu, pni_patch_list *list, int more) {
   return true;
 }
 
-static pn_result read_patches(pni_gpu *gpu, const pni_texture images[3], pni_patch_list *list) {
-  int width = images->width, height = images->height;
+static pn_result read_patches(pn_receiver *receiver, pni_patch_list *list) {
+  pni_gpu *gpu = &receiver->object.context->gpu;
+  const pni_texture *images[] = {&receiver->bounds[0], &receiver->bounds[1], &receiver->below};
+  int width = images[0]->width, height = images[0]->height;
   size_t texels = (size_t)width * (size_t)height;
   float *values = pni_reallocate(gpu, NULL, 3 * texels * 4 * sizeof *values);
   bool made = values && make_room(gpu, list, width * height);
   for (int i = 0; i < 3 && made; i++)
-    pni_texture_read(gpu, &images[i], 0, 0, width, height, 4, values + (size_t)i * texels * 4);
+    pni_texture_read(gpu, images[i], 0, 0, width, height, 4, values + (size_t)i * texels * 4);
   for (size_t i = 0; i < texels && made; i++)
     add_patch(list, values + 4 * i, values + 4 * (texels + i), values + 4 * (2 * texels + i));
   pni_free(gpu, values);
@@ -138,16 +166,17 @@ pn_result pni_receiver_patches(pn_receiver *receiver, const pni_frame *frame, co
   pni_texture *images = receiver->bounds;
   pn_result result = shape(gpu, images, blocks(receiver->desc.width), blocks(receiver->desc.height));
   if (result == PN_OK) result = step(receiver, frame, NULL, images);
-  if (result == PN_OK) result = find_planes(receiver, frame, emission->extent, NULL, images, &images[2]);
-  return result == PN_OK ? read_patches(gpu, images, list) : result;
+  if (result == PN_OK) result = find_slopes(receiver, frame, emission->extent);
+  if (result == PN_OK) result = find_planes(receiver, frame, NULL);
+  return result == PN_OK ? read_patches(receiver, list) : result;
 }
 
 pn_result pni_receiver_offset(pn_receiver *receiver, const pni_frame *frame, const double slope[2], double *offset) {
   pni_gpu *gpu = &receiver->object.context->gpu;
   pni_patch_list list = {0};
   double rounded[2] = {(float)slope[0], (float)slope[1]};
-  pn_result result = find_planes(receiver, frame, NULL, rounded, receiver->bounds, &receiver->bounds[2]);
-  if (result == PN_OK) result = read_patches(gpu, receiver->bounds, &list);
+  pn_result result = find_planes(receiver, frame, rounded);
+  if (result == PN_OK) result = read_patches(receiver, &list);
   for (int i = 0; i < list.count; i++)
     if (list.patches[i].offset < *offset) *offset = list.patches[i].offset;
   pni_patches_free(gpu, &list);

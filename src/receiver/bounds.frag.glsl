@@ -15,28 +15,42 @@ uniform highp sampler2D pn_most_below;
 layout(location = 0) out vec4 pn_least; // least s, t, w; 1 where anything was seen
 layout(location = 1) out vec4 pn_most;
 
+vec4 least = vec4(vec3(PN_EVERYTHING), 0.0), most = vec4(vec3(PN_NOTHING), 0.0);
+
+void pn_include(bool seen, vec3 low, vec3 high) {
+  least = seen ? vec4(min(least.xyz, low), 1.0) : least;
+  most = seen ? vec4(max(most.xyz, high), 1.0) : most;
+}
+
+#if PN_FIRST
+void pn_include_pixel(ivec2 pixel, float depth) {
+  vec3 p = pn_point(pixel, depth), m = pn_map_point(p, pn_parallel != 0);
+  pn_include(!pn_is_background(depth) && (pn_parallel != 0 || p.z > 0.0), m, m);
+}
+
+void pn_include_quad(ivec2 quad) {
+  vec4 depth = pn_depths_of_quad(quad);
+  pn_include_pixel(quad, depth.x);
+  pn_include_pixel(quad + ivec2(1, 0), depth.y);
+  pn_include_pixel(quad + ivec2(0, 1), depth.z);
+  pn_include_pixel(quad + 1, depth.w);
+}
+#else
+void pn_include_texel(ivec2 at) {
+  if (any(greaterThanEqual(at, textureSize(pn_least_below, 0)))) return;
+  vec4 low = texelFetch(pn_least_below, at, 0);
+  pn_include(low.w > 0.5, low.xyz, texelFetch(pn_most_below, at, 0).xyz);
+}
+#endif
+
 void main() {
   ivec2 base = ivec2(gl_FragCoord.xy) * PN_BLOCK;
-  vec4 least = vec4(vec3(PN_EVERYTHING), 0.0);
-  vec4 most = vec4(vec3(PN_NOTHING), 0.0);
-  for (int y = 0; y < PN_BLOCK; y++)
-    for (int x = 0; x < PN_BLOCK; x++) {
-      ivec2 at = base + ivec2(x, y);
 #if PN_FIRST
-      if (!pn_view_has(at) || !pn_receives(at)) continue;
-      vec3 p = pn_point(at, pn_depth_at(at));
-      if (pn_parallel == 0 && p.z <= 0.0) continue;
-      vec3 m = pn_map_point(p, pn_parallel != 0);
-      least = vec4(min(least.xyz, m), 1.0);
-      most = vec4(max(most.xyz, m), 1.0);
+  for (int i = 0; i < PN_BLOCK * PN_BLOCK / 4; i++)
+    pn_include_quad(base + 2 * ivec2(i % (PN_BLOCK / 2), i / (PN_BLOCK / 2)));
 #else
-      if (any(greaterThanEqual(at, textureSize(pn_least_below, 0)))) continue;
-      vec4 l = texelFetch(pn_least_below, at, 0);
-      if (l.w < 0.5) continue;
-      least = vec4(min(least.xyz, l.xyz), 1.0);
-      most = vec4(max(most.xyz, texelFetch(pn_most_below, at, 0).xyz), 1.0);
+  for (int i = 0; i < PN_BLOCK * PN_BLOCK; i++) pn_include_texel(base + ivec2(i % PN_BLOCK, i / PN_BLOCK));
 #endif
-    }
   pn_least = least;
   pn_most = most;
 }

@@ -24,31 +24,47 @@ bool pn_receives(ivec2 pixel) {
   return true;
 }
 
+// The first channel of four texels, (0, 0), (1, 0), (0, 1), (1, 1) beside one: a gather costs little more than a fetch.
+vec4 pn_quad_of(highp sampler2D image, ivec2 texel) {
+#ifdef PN_GATHER
+  return textureGather(image, vec2(texel + 1) / vec2(textureSize(image, 0))).wzxy;
+#else
+  return vec4(texelFetch(image, texel, 0).r, texelFetch(image, texel + ivec2(1, 0), 0).r,
+              texelFetch(image, texel + ivec2(0, 1), 0).r, texelFetch(image, texel + 1, 0).r);
+#endif
+}
+
+// Depths of the pixels (0, 0), (1, 0), (0, 1), (1, 1) beside a pixel of the view; the background's where they lie
+// outside of it or do not receive. For passes that look at all pixels.
+vec4 pn_depths_of_quad(ivec2 pixel) {
+  vec4 depth = pn_quad_of(pn_depth, pn_view.xy + pixel);
+#if PN_MASK
+  vec4 mask = pn_quad_of(pn_mask, pn_offset.xy + pixel);
+#else
+  vec4 mask = vec4(1.0);
+#endif
+  vec2 has = vec2(lessThan(pixel + 1, pn_view.zw));
+  return mix(vec4(pn_quantum.z), depth, notEqual(mask * vec4(1.0, has.x, has.y, has.x * has.y), vec4(0.0)));
+}
+
 float pn_depth_error(float depth) { return max(pn_quantum.x, pn_quantum.y * abs(depth)); }
 
 // Rasterisers are farther off where they cut huge triangles: thin pieces are left along an edge, and single pixels of
 // them lie beside a surface that is straight around them.
 
-// At the view's border: how far depth lies beside a straight line through the three pixels inwards; 0 where it lies on
-// it, or there is none.
-float pn_stray_inwards(ivec2 pixel, ivec2 inwards, float depth, float error) {
-  if (!pn_view_has(pixel + 3 * inwards)) return 0.0;
-  float d1 = pn_depth_at(pixel + inwards), d2 = pn_depth_at(pixel + 2 * inwards);
-  float beside = abs(depth - 2.0 * d1 + d2);
-  bool straight = abs(d1 - 2.0 * d2 + pn_depth_at(pixel + 3 * inwards)) <= 4.0 * error;
-  return beside > 4.0 * error && straight ? beside : 0.0;
-}
-
-// The same elsewhere, of a line through the two pixels on either side.
+// How far depth lies beside a straight line through the two pixels on either side, or at the view's border through the
+// three inwards; 0 where those are not straight, or are not there. Four fetches either way: they run in every pass.
 float pn_stray_along(ivec2 pixel, ivec2 axis, float depth, float error) {
-  if (!pn_view_has(pixel - 2 * axis)) return pn_stray_inwards(pixel, axis, depth, error);
-  if (!pn_view_has(pixel + 2 * axis)) return pn_stray_inwards(pixel, -axis, depth, error);
-  float before = pn_depth_at(pixel - axis), after = pn_depth_at(pixel + axis);
-  float beside = abs(depth - 0.5 * (before + after)), slope = 0.5 * (after - before);
-  if (beside <= 2.0 * error) return 0.0;
-  bool straight = abs(before - pn_depth_at(pixel - 2 * axis) - slope) <= 4.0 * error &&
-                  abs(pn_depth_at(pixel + 2 * axis) - after - slope) <= 4.0 * error;
-  return straight ? beside : 0.0;
+  int at = pixel.x * axis.x + pixel.y * axis.y, last = pn_view.z * axis.x + pn_view.w * axis.y - 1;
+  bool border = at < 2 || at > last - 2;
+  ivec4 offset = !border ? ivec4(-2, -1, 1, 2) : at < 2 ? ivec4(3, 2, 1, 1) : ivec4(-3, -2, -1, -1);
+  if (!pn_view_has(pixel + offset.x * axis)) return 0.0;
+  vec4 d = vec4(pn_depth_at(pixel + offset.x * axis), pn_depth_at(pixel + offset.y * axis),
+                pn_depth_at(pixel + offset.z * axis), pn_depth_at(pixel + offset.w * axis));
+  float slope = border ? d.z - d.y : 0.5 * (d.z - d.y);
+  float beside = abs(depth - d.z + (border ? -slope : slope));
+  bool straight = abs(d.y - d.x - slope) <= 4.0 * error && (border || abs(d.w - d.z - slope) <= 4.0 * error);
+  return straight && beside > (border ? 4.0 : 2.0) * error ? beside : 0.0;
 }
 
 float pn_stray(ivec2 pixel, float depth) {

@@ -14,6 +14,8 @@ static void release_receiver(pni_object *object, bool abandon) {
   pn_receiver *receiver = (pn_receiver *)object;
   pni_gpu *gpu = gpu_of(receiver);
   for (int i = 0; i < 4; i++) pni_texture_free(gpu, &receiver->bounds[i], abandon);
+  pni_texture_free(gpu, &receiver->slopes, abandon);
+  pni_texture_free(gpu, &receiver->below, abandon);
   pni_texture_free(gpu, &receiver->planes, abandon);
   pni_texture_free(gpu, &receiver->copy, abandon);
 }

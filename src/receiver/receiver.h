@@ -19,11 +19,12 @@ struct pn_receiver {
   float depth_error[2];        /* of a stored depth: absolute, relative to it */
   float normal_error;          /* angle by which a given normal may be off, radians */
   double view_rounding;        /* scene units: what the host's vertex shader may lose by the view's distance */
-  pni_texture planes;       /* without given normals: how depth goes on around each pixel (receiver/planes.frag.glsl) */
-  bool has_planes;          /* they are this frame's */
-  pni_texture bounds[4];    /* what bounds.c reduces into: two pairs, in turn */
-  pni_host_texture held[3]; /* while it is open: depth, normals, mask */
-  bool told_range;          /* that glDepthRange may have been another */
+  pni_texture planes;    /* without given normals: how depth goes on around each pixel (receiver/planes.frag.glsl) */
+  bool has_planes;       /* they are this frame's */
+  pni_texture bounds[4]; /* what bounds.c reduces into: two pairs, in turn */
+  pni_texture slopes, below; /* of patches: slopes to try; planes below */
+  pni_host_texture held[3];  /* while it is open: depth, normals, mask */
+  bool told_range;           /* that glDepthRange may have been another */
 };
 
 /* The stored depth that means nothing was drawn. */

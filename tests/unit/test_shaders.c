@@ -1,4 +1,5 @@
-/* Every program the library can make, assembled and given to glslangValidator as GLSL 330 and as GLSL ES 300. */
+/* Every program the library can make, assembled and given to glslangValidator as GLSL 330, without and with gathers,
+ * and as GLSL ES 300. */
 #define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
 #include <stdlib.h>
@@ -99,6 +100,8 @@ static void add_others(void) {
   add_key(screen, "receiver/bounds.frag.glsl", "", "PN_FIRST 0\nPN_MASK 0\n");
   add_key(screen, "receiver/bounds.frag.glsl", "", "PN_FIRST 1\nPN_MASK 0\n");
   add_key(screen, "receiver/bounds.frag.glsl", "", "PN_FIRST 1\nPN_MASK 1\n");
+  add_key(screen, "receiver/slopes.frag.glsl", "", "PN_MASK 0\n");
+  add_key(screen, "receiver/slopes.frag.glsl", "", "PN_MASK 1\n");
   for (int i = 0; i < 4; i++) {
     snprintf(defines, sizeof defines, "PN_MASK %d\nPN_GIVEN %d\n", i & 1, i >> 1);
     add_key(screen, "receiver/patches.frag.glsl", "", defines);
@@ -188,17 +191,19 @@ static void write_shader(const char *name, const char *version, const char *text
   fprintf(list, "%s\n", path);
 }
 
+static const char *const with_gathers = "330 core\n#extension GL_ARB_texture_gather : enable\n#define PN_GATHER 1";
+
 static void write_all(const char *version, FILE *list) {
   for (int i = 0; i < key_count; i++) {
     const program_key *k = &keys[i];
     char name[64];
-    bool es = !strcmp(version, "300 es");
+    bool es = !strcmp(version, "300 es"), gathers = version == with_gathers;
     if (es && desktop_only(k->fragment)) continue;
     char *text = text_of(k->fragment, k->more, k->defines);
-    snprintf(name, sizeof name, "%s-%04d.frag", es ? "es" : "gl", i);
-    write_shader(name, version, text, host_main(k), list);
+    snprintf(name, sizeof name, "%s-%04d.frag", es ? "es" : gathers ? "gather" : "gl", i);
+    if (!gathers || strstr(text, "PN_GATHER")) write_shader(name, version, text, host_main(k), list);
     free(text);
-    if (!*k->vertex) continue;
+    if (!*k->vertex || gathers) continue;
     text = text_of(k->vertex, "", k->defines);
     snprintf(name, sizeof name, "%s-%04d.vert", es ? "es" : "gl", i);
     write_shader(name, version, text, "", list);
@@ -214,6 +219,7 @@ static void test_validator(void **state) {
   snprintf(command, sizeof command, "%s/list", directory);
   FILE *list = fopen(command, "w");
   write_all("330 core", list);
+  write_all(with_gathers, list);
   write_all("300 es", list);
   fclose(list);
   snprintf(command, sizeof command, "xargs glslangValidator < %s/list > %s/log 2>&1", directory, directory);
