@@ -9,8 +9,7 @@
 #include "gl/source.h"
 
 /* Gathers of four texels where there are any: shaders ask for PN_GATHER. */
-static const char *const prelude = "#version 330 core\n"
-                                   "#ifdef GL_ARB_texture_gather\n"
+static const char *const gathers = "#ifdef GL_ARB_texture_gather\n"
                                    "#extension GL_ARB_texture_gather : enable\n"
                                    "#define PN_GATHER 1\n"
                                    "#endif\n";
@@ -24,9 +23,11 @@ static pn_result compile(pni_gpu *gpu, GLenum stage, const char *path, const cha
   const char *paths[] = {path, more, NULL};
   pn_result result = pni_shader_text(gpu, paths, defines, &text);
   if (result != PN_OK) return result;
-  const char *parts[] = {prelude, text};
+  char *end = strchr(text, '\n'); /* the first line says in tools what this is */
+  *end = 0;
+  const char *parts[] = {"#version 330 core\n", text, "\n", gathers, end + 1};
   pn_gl shader = GL(gpu, CreateShader)(stage);
-  GL(gpu, ShaderSource)(shader, 2, parts, NULL);
+  GL(gpu, ShaderSource)(shader, 5, parts, NULL);
   GL(gpu, CompileShader)(shader);
   pni_free(gpu, text);
   pni_label(gpu, GL_SHADER, shader, more ? more : path);
