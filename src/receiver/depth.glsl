@@ -52,18 +52,29 @@ float pn_depth_error(float depth) { return max(pn_quantum.x, pn_quantum.y * abs(
 // Rasterisers are farther off where they cut huge triangles: thin pieces are left along an edge, and single pixels of
 // them lie beside a surface that is straight around them.
 
+// Depths of a pixel and the next one along an axis.
+vec2 pn_depths_of_pair(ivec2 pixel, ivec2 axis) {
+#ifdef PN_GATHER
+  vec4 quad = pn_quad_of(pn_depth, pn_view.xy + pixel);
+  return axis.x > 0 ? quad.xy : quad.xz;
+#else
+  return vec2(pn_depth_at(pixel), pn_depth_at(pixel + axis));
+#endif
+}
+
 // How far depth lies beside a straight line through the two pixels on either side, or at the view's border through the
-// three inwards; 0 where those are not straight, or are not there. Four fetches either way: they run in every pass.
+// three inwards; 0 where those are not straight, or are not there. Two pairs either way: this runs in every pass.
 float pn_stray_along(ivec2 pixel, ivec2 axis, float depth, float error) {
   int at = pixel.x * axis.x + pixel.y * axis.y, last = pn_view.z * axis.x + pn_view.w * axis.y - 1;
-  bool border = at < 2 || at > last - 2;
-  ivec4 offset = !border ? ivec4(-2, -1, 1, 2) : at < 2 ? ivec4(3, 2, 1, 1) : ivec4(-3, -2, -1, -1);
-  if (!pn_view_has(pixel + offset.x * axis)) return 0.0;
-  vec4 d = vec4(pn_depth_at(pixel + offset.x * axis), pn_depth_at(pixel + offset.y * axis),
-                pn_depth_at(pixel + offset.z * axis), pn_depth_at(pixel + offset.w * axis));
-  float slope = border ? d.z - d.y : 0.5 * (d.z - d.y);
-  float beside = abs(depth - d.z + (border ? -slope : slope));
-  bool straight = abs(d.y - d.x - slope) <= 4.0 * error && (border || abs(d.w - d.z - slope) <= 4.0 * error);
+  bool low = at < 2, high = !low && at > last - 2, border = low || high;
+  int first = low ? 2 : high ? -3 : -2, second = high ? -1 : 1;
+  if (!pn_view_has(pixel + (low ? 3 : first) * axis)) return 0.0;
+  vec2 before = pn_depths_of_pair(pixel + first * axis, axis), after = pn_depths_of_pair(pixel + second * axis, axis);
+  if (low) before = before.yx; // from afar
+  float slope = border ? after.x - before.y : 0.5 * (after.x - before.y);
+  float beside = abs(depth - after.x + (border ? -slope : slope));
+  bool straight = abs(before.y - before.x - slope) <= 4.0 * error &&
+                  (border || abs(after.y - after.x - slope) <= 4.0 * error);
   return straight && beside > (border ? 4.0 : 2.0) * error ? beside : 0.0;
 }
 
