@@ -194,11 +194,12 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, pn_Sheet
   vec2 scale = 0.5 / pn_extent(light);
   q.x = 0.5 + scale.x * s * inverse;
   q.y = 0.5 + scale.y * t * inverse;
-  // Columns and rows that hide, and the mean w of their corners.
-  vec4 hidden = hide * dw;
+  // Columns and rows that hide. The middle of an edge on the light is the mean of what its ends project to, so it is
+  // the means of 1 / dw that count.
+  vec4 hidden = hide * inverse;
   vec2 columns = hide.xy + hide.zw, rows = hide.xz + hide.yw;
-  vec2 along_x = pn_edge(scale.x, low.x, high.x, columns, columns / max(hidden.xy + hidden.zw, vec2(PN_TINY)));
-  vec2 along_y = pn_edge(scale.y, low.y, high.y, rows, rows / max(hidden.xz + hidden.yw, vec2(PN_TINY)));
+  vec2 along_x = pn_edge(scale.x, low.x, high.x, columns, (hidden.xy + hidden.zw) / max(columns, vec2(1.0)));
+  vec2 along_y = pn_edge(scale.y, low.y, high.y, rows, (hidden.xz + hidden.yw) / max(rows, vec2(1.0)));
   q.low = vec2(along_x.x, along_y.x);
   q.high = vec2(along_x.y, along_y.y);
   return q;

@@ -272,40 +272,29 @@ static void add_patch(const atlas *a, const receiver *r, int map, int layer, int
   cover_box(f, &b, open_at(r, dw), how);
 }
 
-/* One side of a quad: how many of its two corners hide, and 1 over their mean dw; 0 where none does. */
-typedef struct {
-  int count;
-  double inverse;
-} side;
-
-static side side_of(const int hide[4], const double dw[4], const int corners[2]) {
-  side s = {0};
-  double sum = 0;
-  for (int i = 0; i < 2; i++) {
-    if (hide[corners[i]] != YES) continue;
-    s.count++;
-    sum += dw[corners[i]];
-  }
-  s.inverse = s.count ? s.count / sum : 0;
-  return s;
+/* The mean of what a side's hiding corners project to, all taken to lie at there. False: none of them hides. */
+static bool side_at(const receiver *r, int axis, double there, const int hide[4], const double dw[4],
+                    const int corners[2], double *out) {
+  double projected[2];
+  int count = 0;
+  for (int i = 0; i < 2; i++)
+    if (hide[corners[i]] == YES) projected[count++] = on_light(r, axis, there, dw[corners[i]]);
+  if (count) *out = count == 1 ? projected[0] : 0.5 * (projected[0] + projected[1]);
+  return count > 0;
 }
 
-/* Where a side ends: at its corners, or without any in the middle of the cell. */
-static double end_of(double corner, double middle, const side *own, const side *other) {
-  return own->count ? corner * own->inverse : middle * other->inverse;
-}
-
-/* The rectangle of all four corners, or of those of one row. */
+/* The rectangle through the middles of the edges of the projected quad, or of the row of it that hides: a side without
+ * a corner that does lies in the middle of the cell, as far away as the other side's corners. */
 static box quad_box(const receiver *r, const place q[4], const int hide[4], const double dw[4]) {
   static const int corners[2][2][2] = {{{0, 2}, {1, 3}}, {{0, 1}, {2, 3}}};
   box b;
   for (int c = 0; c < 2; c++) {
-    double low = (c ? q[0].t : q[0].s) - (c ? r->m.t : r->m.s), high = (c ? q[3].t : q[3].s) - (c ? r->m.t : r->m.s);
-    side near = side_of(hide, dw, corners[c][0]), far = side_of(hide, dw, corners[c][1]);
-    double middle = 0.5 * (low + high);
-    double from = end_of(low, middle, &near, &far), to = end_of(high, middle, &far, &near);
-    b.low[c] = 0.5 + 0.5 * fmin(from, to) / r->half[c];
-    b.high[c] = 0.5 + 0.5 * fmax(from, to) / r->half[c];
+    double low = c ? q[0].t : q[0].s, high = c ? q[3].t : q[3].s, middle = 0.5 * (low + high), from, to;
+    const int *near = corners[c][0], *far = corners[c][1];
+    if (!side_at(r, c, low, hide, dw, near, &from)) side_at(r, c, middle, hide, dw, far, &from);
+    if (!side_at(r, c, high, hide, dw, far, &to)) side_at(r, c, middle, hide, dw, near, &to);
+    b.low[c] = fmin(from, to);
+    b.high[c] = fmax(from, to);
   }
   return b;
 }
