@@ -148,13 +148,14 @@ void pn_texel_patch(int light, highp sampler2DArray maps, pn_ShadedPoint r, int 
 }
 
 #if PN_PRIMITIVE != PN_PATCH
-// Where the rectangle ends along one axis: at near and far, at the distances of the corners there; where none of those
-// hides, in the middle.
-vec2 pn_edge(float scale, float near, float far, vec2 corners, vec2 inverse) {
-  float middle = 0.5 * (near + far);
-  vec2 at = 0.5 + scale * vec2(corners.x > 0.0 ? near * inverse.x : middle * inverse.y,
-                               corners.y > 0.0 ? far * inverse.y : middle * inverse.x);
-  return vec2(min(at.x, at.y), max(at.x, at.y));
+// Where the rectangle ends at one side, on the light along one axis: the middle of the edge there, whose ends are clamped
+// to the light first (Fig. 6). Where neither end hides, in the middle of the cell, as far away as the ends beyond.
+// side_s: the side and the cell's middle.
+float pn_edge(float scale, vec2 side_s, vec2 hide, vec2 inverse, vec2 hide_beyond, vec2 inverse_beyond) {
+  bool beyond = hide.x + hide.y == 0.0;
+  vec2 weight = beyond ? hide_beyond : hide;
+  vec2 ends = clamp(0.5 + scale * (beyond ? side_s.y : side_s.x) * (beyond ? inverse_beyond : inverse), 0.0, 1.0);
+  return dot(weight, ends) / max(weight.x + weight.y, 1.0);
 }
 
 // The primitive of a block's four corner samples, or the next part of it. gaps: PN_NO_GAP too where no light passes
@@ -194,14 +195,13 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, pn_Sheet
   vec2 scale = 0.5 / pn_extent(light);
   q.x = 0.5 + scale.x * s * inverse;
   q.y = 0.5 + scale.y * t * inverse;
-  // Columns and rows that hide. The middle of an edge on the light is the mean of what its ends project to, so it is
-  // the means of 1 / dw that count.
-  vec4 hidden = hide * inverse;
-  vec2 columns = hide.xy + hide.zw, rows = hide.xz + hide.yw;
-  vec2 along_x = pn_edge(scale.x, low.x, high.x, columns, (hidden.xy + hidden.zw) / max(columns, vec2(1.0)));
-  vec2 along_y = pn_edge(scale.y, low.y, high.y, rows, (hidden.xz + hidden.yw) / max(rows, vec2(1.0)));
-  q.low = vec2(along_x.x, along_y.x);
-  q.high = vec2(along_x.y, along_y.y);
+  vec2 middle = 0.5 * (low + high);
+  vec4 at = vec4(pn_edge(scale.x, vec2(low.x, middle.x), hide.xz, inverse.xz, hide.yw, inverse.yw),
+                 pn_edge(scale.x, vec2(high.x, middle.x), hide.yw, inverse.yw, hide.xz, inverse.xz),
+                 pn_edge(scale.y, vec2(low.y, middle.y), hide.xy, inverse.xy, hide.zw, inverse.zw),
+                 pn_edge(scale.y, vec2(high.y, middle.y), hide.zw, inverse.zw, hide.xy, inverse.xy));
+  q.low = min(at.xz, at.yw);
+  q.high = max(at.xz, at.yw);
   return q;
 }
 

@@ -272,13 +272,16 @@ static void add_patch(const atlas *a, const receiver *r, int map, int layer, int
   cover_box(f, &b, open_at(r, dw), how);
 }
 
+/* Points beside the light move to its nearest edge (Fig. 6, left). */
+static double clamped(double at) { return at < 0 ? 0 : at > 1 ? 1 : at; }
+
 /* The mean of what a side's hiding corners project to, all taken to lie at there. False: none of them hides. */
 static bool side_at(const receiver *r, int axis, double there, const int hide[4], const double dw[4],
                     const int corners[2], double *out) {
   double projected[2];
   int count = 0;
   for (int i = 0; i < 2; i++)
-    if (hide[corners[i]] == YES) projected[count++] = on_light(r, axis, there, dw[corners[i]]);
+    if (hide[corners[i]] == YES) projected[count++] = clamped(on_light(r, axis, there, dw[corners[i]]));
   if (count) *out = count == 1 ? projected[0] : 0.5 * (projected[0] + projected[1]);
   return count > 0;
 }
