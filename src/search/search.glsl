@@ -149,8 +149,8 @@ void pn_texel_patch(int light, highp sampler2DArray maps, pn_ShadedPoint r, int 
 
 #if PN_PRIMITIVE != PN_PATCH
 // Where the rectangle ends at one side, on the light along one axis: the middle of the edge there, whose ends are
-// clamped to the light first (Fig. 6). Where neither end hides, in the middle of the cell, as far away as the ends beyond.
-// side_s: the side and the cell's middle.
+// clamped to the light first (Fig. 6). Where neither end hides, in the middle of the cell, as far away as the ends
+// beyond. side_s: the side and the cell's middle.
 float pn_edge(float scale, vec2 side_s, vec2 hide, vec2 inverse, vec2 hide_beyond, vec2 inverse_beyond) {
   bool beyond = hide.x + hide.y == 0.0;
   vec2 weight = beyond ? hide_beyond : hide;
