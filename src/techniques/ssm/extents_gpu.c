@@ -41,7 +41,7 @@ static void set_nodes(const pni_ssm_list *list, int level) {
   int layer = list->map * pni_want_layers(&job->maps->want) + list->layer;
   pni_set_ints(gpu, "pn_source", layer, level, list->seen_layer, list->map);
   pni_set_ints(gpu, "pn_levels", job->maps->range.levels, seen->range.levels, seen->want.width, seen->want.height);
-  pni_set_floats(gpu, "pn_share", (const float[4]){(float)list->share});
+  pni_set_floats(gpu, "pn_share", (const float[4]){(float)list->share, list->pairs});
   pni_set_texture(gpu, "pn_range", &job->maps->range);
   pni_seen_set(gpu, seen);
 }

@@ -6,7 +6,7 @@ uniform highp sampler2DArray pn_range;      // of the occluder maps
 uniform highp sampler2DArray pn_seen_range; // of the receiver map
 uniform ivec4 pn_source;                    // layer in the array, level, layer of the receiver map, map
 uniform ivec4 pn_levels; // of the occluders' pyramid, of the receivers'; receiver map's width, height
-uniform vec4 pn_share;   // how far merging may move an edge, as a share of the light's width; 0: none
+uniform vec4 pn_share;   // how far merging may move an edge, as a share of the light's width, 0: none; 1: for pairs
 
 // With several maps the light's tiles overlap by their borders: a node belongs to the map its corners lie in.
 bool pn_node_owned(vec4 texels) {
@@ -28,6 +28,14 @@ float pn_node_limit(ivec2 at, int level, vec4 texels) {
 
 vec4 pn_node_texels(ivec2 at, int level) { return vec4(vec2(at), vec2(at) + 1.0) * float(1 << level); }
 
+// Eq. 3 speaks of pairs: the texel, and its right and upper neighbours.
+float pn_pairs_reach(ivec2 at, float w) {
+  ivec2 last = textureSize(pn_range, 0).xy - 1;
+  float right = texelFetch(pn_range, ivec3(min(at + ivec2(1, 0), last), pn_source.x), 0).r;
+  float upper = texelFetch(pn_range, ivec3(min(at + ivec2(0, 1), last), pn_source.x), 0).r;
+  return max(w, max(right, upper));
+}
+
 // The node as a patch, but for the receivers around it.
 pn_Patch pn_node(ivec2 at, int level) {
   pn_Patch p;
@@ -38,6 +46,7 @@ pn_Patch pn_node(ivec2 at, int level) {
   p.above = pn_node_limit(at >> 1, level + 1, pn_node_texels(at >> 1, level + 1));
   p.rectangle = vec4(pn_map_st(0, pn_source.w, texels.xy), pn_map_st(0, pn_source.w, texels.zw));
   p.drawn = !pn_is_nothing(p.most);
+  p.reach = pn_share.y > 0.0 ? pn_pairs_reach(at, p.w) : p.w;
   p.least = 0.0;
   return p;
 }
@@ -50,16 +59,26 @@ uint pn_own(uint counts) { return counts >> 31; }
 // w of the farthest receiver in the layer; PN_EVERYTHING where there is none.
 float pn_farthest_seen() { return texelFetch(pn_seen_range, ivec3(0, 0, pn_source.z), pn_levels.y - 1).g; }
 
+// Whether the plane of some receiver may cut the node above: seen is of those in reach.
+bool pn_may_be_cut(ivec2 at, int level, vec4 seen) {
+  vec4 texels = pn_node_texels(at >> 1, level + 1);
+  vec2 range = texelFetch(pn_range, ivec3(at >> 1, pn_source.x), level + 1).rg;
+  vec2 size = (texels.zw - texels.xy) * pn_map_texel_size(0, pn_source.w) + pn_extent(0) * (range.x - range.y);
+  return range.y <= -seen.z - max(size.x, size.y) * seen.w;
+}
+
 // Which receivers it reaches: first out to the farthest there is, then to the farthest one found on the way.
-void pn_node_reach(inout pn_Patch p) {
+void pn_node_reach(ivec2 at, int level, inout pn_Patch p) {
   ivec2 size = pn_levels.zw;
-  vec2 seen = vec2(p.most, max(pn_farthest_seen(), p.above));
+  bool merged = !pn_is_nothing(p.above);
+  vec4 seen = vec4(p.most, pn_farthest_seen(), 0.0, 0.0);
   for (int i = 0; i < 2 && p.drawn; i++) {
-    vec2 reach = pn_penumbra_extent(pn_extent(0), p.w, seen.y);
+    vec2 reach = pn_penumbra_extent(pn_extent(0), p.reach, seen.y);
     vec2 low = p.rectangle.xy - reach, high = p.rectangle.zw + reach;
     seen = pn_seen_between(pn_seen_range, pn_source.z, low, high, size, pn_levels.y);
-    p.drawn = seen.y <= p.most && seen.x > p.above;
-    seen.y = max(seen.y, p.above);
+    bool cut = merged && pn_may_be_cut(at, level, seen);
+    p.drawn = seen.y <= p.most && (seen.x > p.above || cut);
+    if (!cut) seen.y = max(seen.y, p.above);
   }
   p.least = seen.y;
 }

@@ -9,7 +9,17 @@ flat in vec4 pn_rectangle;
 flat in vec3 pn_served;
 layout(location = 0) out vec4 pn_out;
 
-#if PN_SUM == 1
+#if PN_SUM == 0
+flat in vec4 pn_larger, pn_ranges;
+flat in vec2 pn_inset;
+
+// Each receiver has each texel in one block: the largest that may serve it, and all of which its plane leaves in front.
+bool pn_serves(vec4 seen, vec2 st) {
+  if (pn_is_nothing(seen.x) || seen.x >= pn_served.x || seen.x > pn_served.y) return false;
+  bool larger = seen.x <= pn_served.z && pn_patch_in_front(seen, st, pn_larger, pn_inset, pn_ranges.zw);
+  return !larger && pn_patch_in_front(seen, st, pn_rectangle, pn_inset, pn_ranges.xy);
+}
+#elif PN_SUM == 1
 flat in vec2 pn_neighbours;
 
 // Soft Shadow Maps, Eq. 3: how far a micropatch and its neighbour beyond the edge at position at overlap, or part, at
@@ -32,10 +42,6 @@ void main() {
   vec4 seen = texelFetch(pn_seen, ivec3(ivec2(gl_FragCoord.xy), pn_layer.x), 0);
   vec2 st = pn_seen_st(gl_FragCoord.xy);
   float w = pn_served.x, nearer = w - seen.x;
-  // In front of the receiver's tangent plane, tested at the patch's middle.
-  vec2 middle = 0.5 * (pn_rectangle.xy + pn_rectangle.zw) - st;
-  bool blocks = !pn_is_nothing(seen.x) && seen.x < w && seen.x <= pn_served.y && seen.x > pn_served.z &&
-                dot(seen.yz, middle) - seen.w * nearer > 1.0;
   vec2 scale = 0.5 / (pn_extent(0) * max(nearer, PN_TINY));
   vec2 low = clamp((pn_rectangle.xy - st) * scale, -0.5, 0.5), high = clamp((pn_rectangle.zw - st) * scale, -0.5, 0.5);
   vec2 covered = high - low;
@@ -45,6 +51,6 @@ void main() {
   bool below = !pn_is_nothing(seen.x) && seen.x < w;
   pn_out = vec4(below ? pn_error_bound(st, seen.x, covered) : 0.0, 0.0, 0.0, 1.0);
 #else
-  pn_out = vec4(blocks ? covered.x * covered.y : 0.0, 0.0, 0.0, 1.0);
+  pn_out = vec4(pn_serves(seen, st) ? covered.x * covered.y : 0.0, 0.0, 0.0, 1.0);
 #endif
 }

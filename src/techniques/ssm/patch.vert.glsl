@@ -4,9 +4,13 @@
 
 uniform highp sampler2D pn_list; // the list
 uniform highp sampler2D pn_limits; // its limits
-#if PN_SUM == 1
 uniform highp sampler2DArray pn_range; // of the occluder maps
 uniform ivec4 pn_layer;
+#if PN_SUM == 0
+flat out vec4 pn_larger;  // the block it is part of: s0, t0, s1, t1
+flat out vec4 pn_ranges;  // largest and smallest w, and of the larger block
+flat out vec2 pn_inset;   // half an occluder texel
+#elif PN_SUM == 1
 flat out vec2 pn_neighbours;       // w of the right and the upper texel
 #endif
 uniform ivec4 pn_order;          // first entry, step to the next
@@ -23,7 +27,16 @@ void main() {
   float w = patch_texels.w;
   pn_rectangle = vec4(low, high);
   pn_served = vec3(w, limits.xy);
-#if PN_SUM == 1
+#if PN_SUM == 0
+  int level = (floatBitsToInt(patch_texels.z) >> 23) - 127; // its size is 2^level
+  ivec2 texel = ivec2(patch_texels.xy) >> level;
+  vec2 above = vec2(texel >> 1);
+  pn_larger = vec4(pn_map_st(0, pn_place.y, above * 2.0 * patch_texels.z),
+                   pn_map_st(0, pn_place.y, (above + 1.0) * 2.0 * patch_texels.z));
+  pn_ranges = vec4(texelFetch(pn_range, ivec3(texel, pn_layer.y), level).rg, vec2(PN_NOTHING));
+  if (!pn_is_nothing(limits.y)) pn_ranges.zw = texelFetch(pn_range, ivec3(texel >> 1, pn_layer.y), level + 1).rg;
+  pn_inset = 0.5 * pn_map_texel_size(0, pn_place.y);
+#elif PN_SUM == 1
   ivec2 texel = ivec2(patch_texels.xy), last = textureSize(pn_range, 0).xy - 1;
   pn_neighbours = vec2(texelFetch(pn_range, ivec3(min(texel + ivec2(1, 0), last), pn_layer.y), 0).r,
                        texelFetch(pn_range, ivec3(min(texel + ivec2(0, 1), last), pn_layer.y), 0).r);

@@ -122,8 +122,13 @@ static pn_result scatter(pni_ssm_scattering *s, int side, int seen_layer) {
   s->sum = 0;
   pn_result result = clear_sum(s, s->by_batches ? pni_image_of(&s->state->sums[0], 0, 0) : soft_layer(s));
   for (int map = 0; map < (int)maps->block.map_count && result == PN_OK; map++) {
-    pni_ssm_list list = {
-        .job = s->job, .state = s->state, .map = map, .layer = side, .seen_layer = seen_layer, .share = s->share};
+    pni_ssm_list list = {.job = s->job,
+                         .state = s->state,
+                         .map = map,
+                         .layer = side,
+                         .seen_layer = seen_layer,
+                         .share = s->share,
+                         .pairs = s->kind == PNI_SSM_SUM_BOUND};
     result = s->on_cpu ? scatter_cpu(s, &list) : scatter_gpu(s, &list);
   }
   if (result == PN_OK && s->by_batches) pni_copy_to_layer(s->job->gpu, &s->state->sums[s->sum], s->soft, s->target);

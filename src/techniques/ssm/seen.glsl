@@ -1,6 +1,6 @@
-// The receiver map, as receiver_map.h lays it out. A texel is (w, a, b, c): the receiver's w at the texel's centre,
-// and its tangent plane over the error of its numbers, so that a point d = (ds, dt, dw) away from the receiver lies in
-// front of the plane where a ds + b dt - c dw > 1.
+// The receiver map, as seen.h lays it out. A texel is (w, a, b, c): the receiver's w at the texel's centre, and its
+// tangent plane over the error of its numbers, so that a point d = (ds, dt, dw) away from the receiver lies in front of
+// the plane where a ds + b dt - c dw > 1. c has what the normal's angle may be off by, which grows with dw.
 uniform vec4 pn_seen_bounds; // s0, t0, texels per unit of s, of t
 
 vec2 pn_seen_texel(vec2 st) { return (st - pn_seen_bounds.xy) * pn_seen_bounds.zw; }

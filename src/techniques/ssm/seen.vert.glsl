@@ -14,16 +14,20 @@ uniform ivec4 pn_layer; // the one before
 #endif
 flat out vec4 pn_texel;
 
-// Error of the tangent plane's test against blockers that can shade this receiver. A surface that bends towards the
-// light (a crease, a facetted mesh) rises in front of the plane on the way to a sample; what is lower than a texel
-// neither map can tell from the surface itself.
+// Error of the tangent plane's test against blockers that can shade this receiver, but for that of the normal's angle.
+// A surface that bends towards the light (a crease, a facetted mesh) rises in front of the plane on the way to a
+// sample; what is lower than a texel neither map can tell from the surface itself.
 float pn_plane_error(pn_Surface s, vec3 m, float k, bool sun) {
-  float near = pn_w_near(0), map_error = pn_lights[0].w_error;
-  vec2 lever = pn_search_window(pn_extent(0), near, m.z);
-  float scale = sun ? 1.0 : m.z, reach = sun ? 1.0 : length(s.p);
+  float map_error = pn_lights[0].w_error, scale = sun ? 1.0 : m.z;
   vec2 texel = max(pn_texel_size(0), 1.0 / pn_seen_bounds.zw);
-  return scale * (dot(abs(s.n), s.error) + s.lift) + abs(k) * map_error + max(texel.x, texel.y) +
-         (s.sigma + 1e-6) * (lever.x + lever.y + reach * max(near - m.z, 0.0));
+  return scale * (dot(abs(s.n), s.error) + s.lift) + abs(k) * map_error + max(texel.x, texel.y);
+}
+
+// What an angle sigma moves the test of a sample by, for each unit of dw: the lever is |ds| + |dt| + reach dw, and a
+// sample that hides light has |ds| <= A_u dw, |dt| <= A_v dw.
+float pn_plane_lever(pn_Surface s, bool sun) {
+  float reach = sun ? 1.0 : length(s.p);
+  return (s.sigma + 1e-6) * (pn_extent(0).x + pn_extent(0).y + reach);
 }
 
 void main() {
@@ -46,7 +50,7 @@ void main() {
   if (m.z >= before.x + pn_seen_rise(before.yz, before.w, -off, 4.0 * thickness) - thickness) return;
 #endif
   float w = m.z + pn_seen_rise(s.n.xy, k, off, 4.0 * thickness);
-  pn_texel = vec4(w, vec3(s.n.xy, k) / pn_plane_error(s, m, k, sun));
+  pn_texel = vec4(w, vec3(s.n.xy, k + pn_plane_lever(s, sun)) / pn_plane_error(s, m, k, sun));
   // At its texel's centre: where a point on a border goes is then not the rasteriser's choice.
   // Whose plane is known speaks for the texel before who lies on the same surface and only knows bounds.
   float nearness = m.z - (s.lift > 0.0 ? thickness : 0.0);

@@ -35,6 +35,7 @@ typedef struct {
   int map, layer; /* of the occluder maps, and within one */
   int seen_layer;
   double share; /* of the light's width that merging may move an edge; 0: every texel for itself */
+  bool pairs;   /* whatever a texel or its right or upper neighbour reaches: Eq. 3 speaks of pairs */
   int first;    /* entry */
 } pni_ssm_list;
 
