@@ -191,7 +191,7 @@ static void blocks_do_not_cross_horizons(void **state) {
   (void)state;
   scene c = {0};
   wall_open(&c);
-  pn_light_desc light = light_over_ground(wide_u, wide_v, 256);
+  pn_light_desc light = light_over_ground(wide_u, wide_v, 128);
   float *visibility[2];
   for (int i = 0; i < 2; i++) visibility[i] = stage_visibility(&c.s, &light, i ? "ssm:merge=0" : "ssm:merge=5");
   pn_maps_info info;
@@ -211,6 +211,59 @@ static void blocks_do_not_cross_horizons(void **state) {
   assert_true(worst <= 0.003);
   assert_true(apart <= 0.002);
   for (int i = 0; i < 2; i++) free(visibility[i]);
+  over_ground_close(&c);
+}
+
+/* ---- coarse normals ---------------------------------------------------------------------------------------------- */
+
+/* The ground's normals in eight bits, in place of exact ones. */
+static GLuint receive_coarse_normals(scene *c) {
+  unsigned char up[SIZE * SIZE][4];
+  for (int k = 0; k < SIZE * SIZE; k++) memcpy(up[k], (const unsigned char[4]){128, 255, 128, 255}, 4);
+  GLuint texture;
+  glGenTextures(1, &texture);
+  glBindTexture(GL_TEXTURE_2D, texture);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, SIZE, SIZE, 0, GL_RGBA, GL_UNSIGNED_BYTE, up);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+  pn_receiver_desc desc = view_desc(&c->v, false);
+  desc.normal_texture = texture;
+  desc.normal_encoding = PN_NORMAL_UNSIGNED;
+  assert_ok(pn_receiver_set(c->s.receiver, &desc));
+  return texture;
+}
+
+static double hidden_of_sun(double x, double half) {
+  return (clamped((plate - x) / plate_h, -half, half) - clamped((-plate - x) / plate_h, -half, half)) / (2 * half);
+}
+
+/* What a normal's angle may be off by counts for each sample as far as it is away. Something high up, off to a side where
+ * it shades nothing that is seen, takes no other caster's shadow. */
+static void near_casters_leave_far_ones_their_shadow(void **state) {
+  (void)state;
+  const double height = 400, tangent = 0.1, aside_x = 43;
+  scene c = {0};
+  add_plate(&c);
+  soup_patch(&c.casters, v3(aside_x, height, 0), v3(0.1, 0, 0), v3(0, 0, 0.1));
+  scene_open(&c, 2.2);
+  GLuint normals = receive_coarse_normals(&c);
+  pn_light_desc light = sun_along(v3(0, -1, 0), tangent, tangent, 4096);
+  light.map_height = 128;
+  light.fit = PN_FIT_CASTERS;
+  float *visibility = stage_visibility(&c.s, &light, "ssm:size=128");
+  pn_maps_info info;
+  assert_ok(pn_light_maps(c.s.light, &info));
+  assert_true(info.s1 - info.s0 > aside_x); /* the map has both */
+  double texel = fmax((info.s1 - info.s0) / info.width, (info.t1 - info.t0) / info.height) / plate_h;
+  double allowed = 2 * 2 * texel / (2 * tangent), worst = 0;
+  for (int k = 0; k < SIZE * SIZE; k++) {
+    vec p = view_point(&c.v, k % SIZE, k / SIZE);
+    worst = fmax(worst, fabs(visibility[k] - 1 + hidden_of_sun(p.x, tangent) * hidden_of_sun(p.z, tangent)));
+  }
+  print_message("beside a caster near the sun: off by %.4f, texels allow %.4f\n", worst, allowed);
+  assert_true(allowed < 0.5);
+  assert_true(worst <= allowed);
+  free(visibility);
+  glDeleteTextures(1, &normals);
   over_ground_close(&c);
 }
 
@@ -401,6 +454,7 @@ int main(void) {
       cmocka_unit_test(gpu_and_cpu_lists_agree),
       cmocka_unit_test(parallel_plate_has_its_closed_form),
       cmocka_unit_test(blocks_do_not_cross_horizons),
+      cmocka_unit_test(near_casters_leave_far_ones_their_shadow),
       cmocka_unit_test(sums_in_16_bits_lose_small_patches),
       cmocka_unit_test(devices_without_float_blending_sum_by_batches),
       cmocka_unit_test(counted_draws_change_nothing),
