@@ -236,8 +236,8 @@ static double hidden_of_sun(double x, double half) {
   return (clamped((plate - x) / plate_h, -half, half) - clamped((-plate - x) / plate_h, -half, half)) / (2 * half);
 }
 
-/* What a normal's angle may be off by counts for each sample as far as it is away. Something high up, off to a side where
- * it shades nothing that is seen, takes no other caster's shadow. */
+/* What a normal's angle may be off by counts for each sample as far as it is away. Something high up, off to a side
+ * where it shades nothing that is seen, takes no other caster's shadow. */
 static void near_casters_leave_far_ones_their_shadow(void **state) {
   (void)state;
   const double height = 400, tangent = 0.1, aside_x = 43;
