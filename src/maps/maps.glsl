@@ -80,6 +80,14 @@ float pn_map_fetch(int light, sampler2DArray maps, int map, int layer, ivec2 tex
   return pn_map_w(light, map, texelFetch(maps, ivec3(texel, pn_array_layer(light, map, layer)), 0).r);
 }
 
+// How many levels up a depth-first walk over a pyramid goes past a node: it may be the last of its four, they may be of
+// the last, and so on. Its coordinates share as many ones at the low end; counted without a loop, whose turns would
+// count too (software GL ends a shader's loops after 65535 in all).
+int pn_levels_past(ivec2 node) {
+  int both = node.x & node.y, lowest_zero = ~both & (both + 1);
+  return (floatBitsToInt(float(lowest_zero)) >> 23) - 127;
+}
+
 // The map that a position lies in: the one of which it is most inside, since tiles overlap by their borders. Positions
 // outside every map get the nearest.
 int pn_map_at(int light, vec2 st) {

@@ -457,16 +457,14 @@ int pn_visit_block(int light, highp sampler2DArray range, pn_ShadedPoint r, pn_S
 #endif
 }
 
-// A step of the walk: down to the first child, or past all last children and then aside. Blocks end with as many last
-// children as their coordinates share ones at the low end; counted without a loop, whose turns would count too.
+// A step of the walk: down to the first child, or past all last children and then aside.
 void pn_walk(inout pn_Walk walk, bool down) {
   if (down) {
     walk.level--;
     walk.node <<= 1;
     return;
   }
-  int both = walk.node.x & walk.node.y, lowest_zero = ~both & (both + 1);
-  int up = min((floatBitsToInt(float(lowest_zero)) >> 23) - 127, walk.top - walk.level);
+  int up = min(pn_levels_past(walk.node), walk.top - walk.level);
   walk.level += up;
   walk.node >>= up;
   if (walk.level < walk.top) {

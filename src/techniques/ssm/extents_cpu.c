@@ -7,40 +7,36 @@
 #include "gl/host.h"
 #include "techniques/ssm/ssm.h"
 
-/* A range pyramid, level after level. */
+/* A pyramid of (largest, smallest) w, level after level. */
 enum { LEVELS_MAX = 16 };
 typedef struct {
-  int width, height, levels, channels;
+  int width, height, levels;
   float *level[LEVELS_MAX];
 } pyramid;
 
 static int shifted(int size, int level) { return size >> level > 1 ? size >> level : 1; }
 
-/* Channels that are read: of occluders the largest and smallest w. */
-enum { OCCLUDERS = 2, RECEIVERS = 4 };
-
 /* Numbers that it has. */
-static size_t pyramid_floats(const pni_texture *texture, int channels) {
+static size_t pyramid_floats(const pni_texture *texture) {
   size_t texels = 0;
   for (int i = 0; i < texture->levels; i++)
     texels += (size_t)shifted(texture->width, i) * (size_t)shifted(texture->height, i);
-  return (size_t)channels * texels;
+  return 2 * texels;
 }
 
-static void read_pyramid(pni_gpu *gpu, const pni_texture *texture, int layer, int channels, float *memory,
-                         pyramid *out) {
-  *out = (pyramid){texture->width, texture->height, texture->levels, channels, {0}};
+static void read_pyramid(pni_gpu *gpu, const pni_texture *texture, int layer, float *memory, pyramid *out) {
+  *out = (pyramid){texture->width, texture->height, texture->levels, {0}};
   float *next = memory;
   for (int i = 0; i < texture->levels; i++) {
     int width = shifted(texture->width, i), height = shifted(texture->height, i);
-    pni_texture_read(gpu, texture, i, layer, width, height, channels, next);
+    pni_texture_read(gpu, texture, i, layer, width, height, 2, next);
     out->level[i] = next;
-    next += (size_t)channels * (size_t)width * (size_t)height;
+    next += 2 * (size_t)width * (size_t)height;
   }
 }
 
 static const float *pyramid_at(const pyramid *p, int x, int y, int level) {
-  return p->level[level] + (size_t)p->channels * ((size_t)y * (size_t)shifted(p->width, level) + (size_t)x);
+  return p->level[level] + 2 * ((size_t)y * (size_t)shifted(p->width, level) + (size_t)x);
 }
 
 /* ---- the walk ---------------------------------------------------------------------------------------------------- */
@@ -106,7 +102,7 @@ static float node_limit(const walk *w, int x, int y, int level) {
   return !pni_is_nothing(range[1]) && node_owned(w, texels) ? patch_limit(range, w->share) : PNI_NOTHING;
 }
 
-static void seen_between(const walk *w, const float low[2], const float high[2], float out[RECEIVERS]) {
+static void seen_between(const walk *w, const float low[2], const float high[2], float out[2]) {
   int a[2], b[2], extent = 0, level = 0;
   for (int i = 0; i < 2; i++) {
     const float *bounds = w->seen_bounds;
@@ -118,11 +114,11 @@ static void seen_between(const walk *w, const float low[2], const float high[2],
   while (extent >> level > 0) level++;
   if (level > w->receivers.levels - 1) level = w->receivers.levels - 1;
   out[0] = PNI_NOTHING;
-  for (int c = 1; c < RECEIVERS; c++) out[c] = PNI_EVERYTHING;
+  out[1] = PNI_EVERYTHING;
   for (int i = 0; i < 4; i++) {
     const float *r = pyramid_at(&w->receivers, (i & 1 ? b[0] : a[0]) >> level, (i & 2 ? b[1] : a[1]) >> level, level);
     out[0] = fmaxf(out[0], r[0]);
-    for (int c = 1; c < RECEIVERS; c++) out[c] = fminf(out[c], r[c]);
+    out[1] = fminf(out[1], r[1]);
   }
 }
 
@@ -139,51 +135,28 @@ static float pairs_reach(const walk *w, int x, int y, float own) {
   return fmaxf(own, fmaxf(right[0], upper[0]));
 }
 
-/* Whether the plane of some receiver may cut the node above. */
-static bool may_be_cut(const walk *w, int x, int y, int level, const float seen[RECEIVERS]) {
-  const float *range = pyramid_at(&w->occluders, x >> 1, y >> 1, level + 1);
-  float most = 0;
-  for (int i = 0; i < 2; i++)
-    most = fmaxf(most, (float)(2 << level) / map_of(w)->density[i] + w->block->extent[i] * (range[0] - range[1]));
-  return range[1] <= -seen[2] - most * seen[3];
-}
-
-typedef struct {
-  float low[2], high[2];
-  float reach, most, above;
-} place;
-
-/* The farthest receiver in reach; false where none needs the node: node_reach. */
-static bool node_reach(const walk *w, int x, int y, int level, const place *p, float *least) {
-  float seen[RECEIVERS] = {p->most, pyramid_at(&w->receivers, 0, 0, w->receivers.levels - 1)[1]};
+/* Adds the node where it is a micropatch that some receiver needs: pn_node. */
+static void add_node(walk *w, int x, int y, int level) {
+  const float *range = pyramid_at(&w->occluders, x, y, level), *extent = w->block->extent;
+  float middle = 0.5f * (range[0] + range[1]), most = node_limit(w, x, y, level);
+  if (pni_is_nothing(most)) return;
+  float above = node_limit(w, x >> 1, y >> 1, level + 1), size = (float)(1 << level), low[2], high[2];
+  map_st(w, (float)x * size, (float)y * size, low);
+  map_st(w, ((float)x + 1) * size, ((float)y + 1) * size, high);
+  float farthest = w->list->pairs ? pairs_reach(w, x, y, middle) : middle;
+  float seen[2] = {most, fmaxf(pyramid_at(&w->receivers, 0, 0, w->receivers.levels - 1)[1], above)};
   for (int i = 0; i < 2; i++) {
     float from[2], to[2];
     for (int c = 0; c < 2; c++) {
-      float reach = w->block->extent[c] * fmaxf(p->reach - seen[1], 0);
-      from[c] = p->low[c] - reach;
-      to[c] = p->high[c] + reach;
+      float reach = extent[c] * fmaxf(farthest - seen[1], 0);
+      from[c] = low[c] - reach;
+      to[c] = high[c] + reach;
     }
     seen_between(w, from, to, seen);
-    bool cut = !pni_is_nothing(p->above) && may_be_cut(w, x, y, level, seen);
-    if (!(seen[1] <= p->most && (seen[0] > p->above || cut))) return false;
-    if (!cut) seen[1] = fmaxf(seen[1], p->above);
+    if (!(seen[1] <= most && seen[0] > above)) return;
+    seen[1] = fmaxf(seen[1], above);
   }
-  *least = seen[1];
-  return true;
-}
-
-/* Adds the node where it is a micropatch that some receiver needs: pn_node. */
-static void add_node(walk *w, int x, int y, int level) {
-  const float *range = pyramid_at(&w->occluders, x, y, level);
-  float middle = 0.5f * (range[0] + range[1]), size = (float)(1 << level), least;
-  place p = {.most = node_limit(w, x, y, level)};
-  if (pni_is_nothing(p.most)) return;
-  p.above = node_limit(w, x >> 1, y >> 1, level + 1);
-  p.reach = w->list->pairs ? pairs_reach(w, x, y, middle) : middle;
-  map_st(w, (float)x * size, (float)y * size, p.low);
-  map_st(w, ((float)x + 1) * size, ((float)y + 1) * size, p.high);
-  if (!node_reach(w, x, y, level, &p, &least)) return;
-  const float entry[8] = {(float)x * size, (float)y * size, size, middle, p.most, p.above, least, 1};
+  const float entry[8] = {(float)x * size, (float)y * size, size, middle, most, above, seen[1], 1};
   add_entry(w, entry);
 }
 
@@ -199,7 +172,7 @@ static void visit(walk *w, int x, int y, int level) {
 
 /* What the walk works in: both pyramids, and a list. */
 static size_t scratch_floats(const pni_ssm_list *list) {
-  return pyramid_floats(&list->job->maps->range, OCCLUDERS) + pyramid_floats(&list->state->seen.range, RECEIVERS) +
+  return pyramid_floats(&list->job->maps->range) + pyramid_floats(&list->state->seen.range) +
          8 * (size_t)pni_ssm_list_size(list->job->maps);
 }
 
@@ -237,16 +210,16 @@ pn_result pni_ssm_cpu_list(const pni_ssm_list *list, int *total) {
   *total = 1;
   pn_result result = take_scratch(list);
   if (result != PN_OK || job->gpu->plan.on) return result;
-  float *receivers = list->state->scratch + pyramid_floats(&job->maps->range, OCCLUDERS);
+  float *receivers = list->state->scratch + pyramid_floats(&job->maps->range);
   walk w = {.list = list,
             .block = &job->maps->block,
             .share = (float)list->share,
             .seen_bounds = {(float)b[0], (float)b[1], (float)(want->width / (b[2] - b[0])),
                             (float)(want->height / (b[3] - b[1]))},
             .seen_size = {want->width, want->height},
-            .entries = receivers + pyramid_floats(&seen->range, RECEIVERS)};
-  read_pyramid(job->gpu, &job->maps->range, layer, OCCLUDERS, list->state->scratch, &w.occluders);
-  read_pyramid(job->gpu, &seen->range, list->seen_layer, RECEIVERS, receivers, &w.receivers);
+            .entries = receivers + pyramid_floats(&seen->range)};
+  read_pyramid(job->gpu, &job->maps->range, layer, list->state->scratch, &w.occluders);
+  read_pyramid(job->gpu, &seen->range, list->seen_layer, receivers, &w.receivers);
   visit(&w, 0, 0, w.occluders.levels - 1);
   *total = w.count;
   int left = w.count - list->first;

@@ -45,7 +45,7 @@ void main() {
   // A loop, not a condition: software GL runs through both sides of a condition, but not through a loop of no turns.
   for (int i = 0; i < found; i++) {
     pn_Patch p = pn_node(at, level);
-    pn_node_reach(at, level, p);
+    pn_node_reach(p);
     float scale = float(1 << level);
     pn_out = vec4(vec2(at) * scale, scale, p.w);
     pn_limits = vec4(p.most, p.above, p.least, 1.0);

@@ -59,26 +59,16 @@ uint pn_own(uint counts) { return counts >> 31; }
 // w of the farthest receiver in the layer; PN_EVERYTHING where there is none.
 float pn_farthest_seen() { return texelFetch(pn_seen_range, ivec3(0, 0, pn_source.z), pn_levels.y - 1).g; }
 
-// Whether the plane of some receiver may cut the node above: seen is of those in reach.
-bool pn_may_be_cut(ivec2 at, int level, vec4 seen) {
-  vec4 texels = pn_node_texels(at >> 1, level + 1);
-  vec2 range = texelFetch(pn_range, ivec3(at >> 1, pn_source.x), level + 1).rg;
-  vec2 size = (texels.zw - texels.xy) * pn_map_texel_size(0, pn_source.w) + pn_extent(0) * (range.x - range.y);
-  return range.y <= -seen.z - max(size.x, size.y) * seen.w;
-}
-
 // Which receivers it reaches: first out to the farthest there is, then to the farthest one found on the way.
-void pn_node_reach(ivec2 at, int level, inout pn_Patch p) {
+void pn_node_reach(inout pn_Patch p) {
   ivec2 size = pn_levels.zw;
-  bool merged = !pn_is_nothing(p.above);
-  vec4 seen = vec4(p.most, pn_farthest_seen(), 0.0, 0.0);
+  vec2 seen = vec2(p.most, max(pn_farthest_seen(), p.above));
   for (int i = 0; i < 2 && p.drawn; i++) {
     vec2 reach = pn_penumbra_extent(pn_extent(0), p.reach, seen.y);
     vec2 low = p.rectangle.xy - reach, high = p.rectangle.zw + reach;
     seen = pn_seen_between(pn_seen_range, pn_source.z, low, high, size, pn_levels.y);
-    bool cut = merged && pn_may_be_cut(at, level, seen);
-    p.drawn = seen.y <= p.most && (seen.x > p.above || cut);
-    if (!cut) seen.y = max(seen.y, p.above);
+    p.drawn = seen.y <= p.most && seen.x > p.above;
+    seen.y = max(seen.y, p.above);
   }
   p.least = seen.y;
 }

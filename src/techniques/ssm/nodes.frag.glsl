@@ -15,7 +15,7 @@ void main() {
   float nearest = texelFetch(pn_range, ivec3(at, pn_source.x), pn_source.y).r;
   if (pn_is_nothing(-pn_farthest_seen()) || pn_is_nothing(nearest)) discard;
   pn_Patch p = pn_node(at, pn_source.y);
-  pn_node_reach(at, pn_source.y, p);
+  pn_node_reach(p);
   uint own = p.drawn ? 1u : 0u, count = own;
 #if !PN_FIRST
   ivec2 last = textureSize(pn_counted, 0) - 1;

@@ -4,20 +4,59 @@
 #include "techniques/ssm/patches.glsl"
 
 uniform highp sampler2DArray pn_seen; // the receiver map
-uniform ivec4 pn_layer; // of the receiver map; of the occluder maps' array, last texel of the map
+uniform ivec4 pn_layer; // of the receiver map; of the occluder maps' array
 flat in vec4 pn_rectangle;
 flat in vec3 pn_served;
 layout(location = 0) out vec4 pn_out;
 
 #if PN_SUM == 0
-flat in vec4 pn_larger, pn_ranges;
-flat in vec2 pn_inset;
+flat in ivec3 pn_patch_node; // in that pyramid: texel, level
+flat in vec2 pn_depths; // largest and smallest w
+uniform highp sampler2DArray pn_range; // of the occluder maps
+flat in vec4 pn_grid;   // (s, t) of the map's texel (0, 0), a texel's size
+#endif
 
-// Each receiver has each texel in one block: the largest that may serve it, and all of which its plane leaves in front.
-bool pn_serves(vec4 seen, vec2 st) {
-  if (pn_is_nothing(seen.x) || seen.x >= pn_served.x || seen.x > pn_served.y) return false;
-  bool larger = seen.x <= pn_served.z && pn_patch_in_front(seen, st, pn_larger, pn_inset, pn_ranges.zw);
-  return !larger && pn_patch_in_front(seen, st, pn_rectangle, pn_inset, pn_ranges.xy);
+// What a rectangle at w covers of the light, in either direction.
+vec2 pn_covered(vec4 rectangle, vec2 st, float nearer) {
+  vec2 scale = 0.5 / (pn_extent(0) * max(nearer, PN_TINY));
+  vec2 low = clamp((rectangle.xy - st) * scale, -0.5, 0.5), high = clamp((rectangle.zw - st) * scale, -0.5, 0.5);
+  return high - low;
+}
+
+#if PN_SUM == 0
+// Least and greatest value of the tangent plane's test over a block: over the centres of its texels, at both ends of
+// its range.
+vec2 pn_front_of(vec4 seen, vec2 st, vec4 rectangle, vec2 inset, vec2 range) {
+  vec2 middle = 0.5 * (rectangle.xy + rectangle.zw) - st, aside = 0.5 * (rectangle.zw - rectangle.xy) - inset;
+  vec2 fall = seen.w * (range - seen.x);
+  float centre = dot(seen.yz, middle), slope = dot(abs(seen.yz), aside);
+  return vec2(centre - slope - max(fall.x, fall.y), centre + slope - min(fall.x, fall.y));
+}
+
+// What the micropatch hides: all that it covers where all of it lies in front of the receiver's tangent plane, else
+// what the smaller blocks in it do, down to single texels. A loop, not a condition: software GL runs through both sides
+// of a condition, but not through a loop of no turns.
+float pn_hidden_by_patch(vec4 seen, vec2 st, float area) {
+  vec2 inset = 0.5 * pn_grid.zw, front = pn_front_of(seen, st, pn_rectangle, inset, pn_depths);
+  bool whole = front.x > 1.0, cut = area > 0.0 && !whole && front.y > 1.0;
+  float hidden = whole ? area : 0.0;
+  ivec2 node = pn_patch_node.xy << 1;
+  int level = cut ? pn_patch_node.z - 1 : pn_patch_node.z;
+  while (level < pn_patch_node.z && level >= 0) {
+    vec4 rectangle = pn_grid.xyxy + vec4(node << level, (node + 1) << level) * pn_grid.zwzw;
+    vec2 range = texelFetch(pn_range, ivec3(node, pn_layer.y), level).rg;
+    front = pn_front_of(seen, st, rectangle, inset, range);
+    vec2 covered = pn_covered(rectangle, st, 0.5 * (range.x + range.y) - seen.x);
+    float part = covered.x * covered.y;
+    hidden += front.x > 1.0 ? part : 0.0;
+    // To the first child, or to the next block that does not lie in this one, until the micropatch is left.
+    bool down = level > 0 && part > 0.0 && front.x <= 1.0 && front.y > 1.0;
+    int up = down ? -1 : pn_levels_past(node);
+    level += up;
+    node = down ? node << 1 : node >> up;
+    if (!down) node += (node.x & 1) == 0 ? ivec2(1, 0) : ivec2(-1, 1);
+  }
+  return hidden;
 }
 #elif PN_SUM == 1
 flat in vec2 pn_neighbours;
@@ -41,16 +80,16 @@ float pn_error_bound(vec2 st, float w_r, vec2 covered) {
 void main() {
   vec4 seen = texelFetch(pn_seen, ivec3(ivec2(gl_FragCoord.xy), pn_layer.x), 0);
   vec2 st = pn_seen_st(gl_FragCoord.xy);
-  float w = pn_served.x, nearer = w - seen.x;
-  vec2 scale = 0.5 / (pn_extent(0) * max(nearer, PN_TINY));
-  vec2 low = clamp((pn_rectangle.xy - st) * scale, -0.5, 0.5), high = clamp((pn_rectangle.zw - st) * scale, -0.5, 0.5);
-  vec2 covered = high - low;
 #if PN_SUM == 2
   pn_out = vec4(1.0, 0.0, 0.0, 1.0);
-#elif PN_SUM == 1
-  bool below = !pn_is_nothing(seen.x) && seen.x < w;
+#else
+  bool below = !pn_is_nothing(seen.x) && seen.x < pn_served.x;
+  vec2 covered = pn_covered(pn_rectangle, st, pn_served.x - seen.x);
+#if PN_SUM == 1
   pn_out = vec4(below ? pn_error_bound(st, seen.x, covered) : 0.0, 0.0, 0.0, 1.0);
 #else
-  pn_out = vec4(pn_serves(seen, st) ? covered.x * covered.y : 0.0, 0.0, 0.0, 1.0);
+  bool served = below && seen.x <= pn_served.y && seen.x > pn_served.z;
+  pn_out = vec4(pn_hidden_by_patch(seen, st, served ? covered.x * covered.y : 0.0), 0.0, 0.0, 1.0);
+#endif
 #endif
 }

@@ -4,12 +4,14 @@
 
 uniform highp sampler2D pn_list; // the list
 uniform highp sampler2D pn_limits; // its limits
+#if PN_SUM != 2
 uniform highp sampler2DArray pn_range; // of the occluder maps
 uniform ivec4 pn_layer;
+#endif
 #if PN_SUM == 0
-flat out vec4 pn_larger;  // the block it is part of: s0, t0, s1, t1
-flat out vec4 pn_ranges;  // largest and smallest w, and of the larger block
-flat out vec2 pn_inset;   // half an occluder texel
+flat out ivec3 pn_patch_node;           // in the pyramid over the occluder map: texel, level
+flat out vec4 pn_grid;             // (s, t) of the map's texel (0, 0), a texel's size
+flat out vec2 pn_depths;           // its largest and smallest w
 #elif PN_SUM == 1
 flat out vec2 pn_neighbours;       // w of the right and the upper texel
 #endif
@@ -28,14 +30,10 @@ void main() {
   pn_rectangle = vec4(low, high);
   pn_served = vec3(w, limits.xy);
 #if PN_SUM == 0
-  int level = (floatBitsToInt(patch_texels.z) >> 23) - 127; // its size is 2^level
-  ivec2 texel = ivec2(patch_texels.xy) >> level;
-  vec2 above = vec2(texel >> 1);
-  pn_larger = vec4(pn_map_st(0, pn_place.y, above * 2.0 * patch_texels.z),
-                   pn_map_st(0, pn_place.y, (above + 1.0) * 2.0 * patch_texels.z));
-  pn_ranges = vec4(texelFetch(pn_range, ivec3(texel, pn_layer.y), level).rg, vec2(PN_NOTHING));
-  if (!pn_is_nothing(limits.y)) pn_ranges.zw = texelFetch(pn_range, ivec3(texel >> 1, pn_layer.y), level + 1).rg;
-  pn_inset = 0.5 * pn_map_texel_size(0, pn_place.y);
+  int level = (floatBitsToInt(patch_texels.z) >> 23) - 127; // it is 2^level wide
+  pn_patch_node = ivec3(ivec2(patch_texels.xy) >> level, level);
+  pn_grid = vec4(pn_map_st(0, pn_place.y, vec2(0.0)), pn_map_texel_size(0, pn_place.y));
+  pn_depths = texelFetch(pn_range, ivec3(pn_patch_node.xy, pn_layer.y), level).rg;
 #elif PN_SUM == 1
   ivec2 texel = ivec2(patch_texels.xy), last = textureSize(pn_range, 0).xy - 1;
   pn_neighbours = vec2(texelFetch(pn_range, ivec3(min(texel + ivec2(1, 0), last), pn_layer.y), 0).r,

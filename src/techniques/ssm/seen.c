@@ -8,7 +8,7 @@
 
 static pn_result shape(pni_gpu *gpu, pni_seen *seen) {
   const pni_seen_want *w = &seen->want;
-  static const pni_range_kind pyramid = {.structure = PNI_RANGE_PYRAMID, .least_there = true}; /* of four channels */
+  static const pni_range_kind pyramid = {.structure = PNI_RANGE_PYRAMID};
   pn_result result =
       pni_texture_shape(gpu, &seen->layers, "seen surfaces", PNI_RGBA32F, w->width, w->height, w->layers, 1);
   if (result == PN_OK)

@@ -17,9 +17,7 @@ typedef struct {
   /* RGBA32F array, a layer for each surface, nearest to the light first. A texel: w of the surface at its centre, and
    * its tangent plane (seen.glsl); w is PN_NOTHING where no pixel shows one. */
   pni_texture layers;
-  /* Pyramid over layers: of 2^i x 2^i texels largest and smallest w, and what their planes may cut
-   * (seen_range.frag.glsl); padded to powers of two. */
-  pni_texture range;
+  pni_texture range; /* pyramid over layers: largest and smallest w of 2^i x 2^i texels, padded to powers of two */
   pni_texture aside, depth; /* while a layer is drawn */
   pni_seen_want want;
 } pni_seen;
