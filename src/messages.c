@@ -75,6 +75,7 @@ const char *pn_message_name(int message_id) {
       NAME(DEBUG_FLAGS),
       NAME(RECEIVER_RANGE),
       NAME(RECEIVER_POSITION),
+      NAME(SEARCH_COARSER),
 #undef NAME
   };
   _Static_assert(sizeof names / sizeof *names == PN_MESSAGE_COUNT, "every message has a name");

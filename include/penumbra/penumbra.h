@@ -151,6 +151,8 @@ typedef enum {
    * description has none */
   PN_MESSAGE_RECEIVER_RANGE,
   PN_MESSAGE_RECEIVER_POSITION,       /* position_error negative or not finite */
+  /* information, once a pair: with merge=0 windows may have more texels than are looked at one by one */
+  PN_MESSAGE_SEARCH_COARSER,
   PN_MESSAGE_COUNT
 } pn_message;
 

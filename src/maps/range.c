@@ -47,8 +47,8 @@ static const float nothing[4] = {PNI_NOTHING, PNI_NOTHING, PNI_EVERYTHING, NO_GA
 enum { DEFINES = 64 };
 
 static pni_program_key range_program(const pni_range_kind *kind, bool first, char defines[DEFINES]) {
-  snprintf(defines, DEFINES, "PN_FIRST %d\nPN_STACK %d\nPN_QUADS %d\n", first, kind->structure == PNI_RANGE_STACK,
-           kind->quads);
+  snprintf(defines, DEFINES, "PN_FIRST %d\nPN_STACK %d\nPN_QUADS %d\nPN_CORNERS %d\n", first,
+           kind->structure == PNI_RANGE_STACK, kind->quads, kind->quads && kind->least_there);
   return (pni_program_key){.fragment = "maps/range.frag.glsl", .defines = defines};
 }
 

@@ -1,8 +1,8 @@
 // Largest and smallest w of neighbourhoods, the smallest beside what is empty (PN_EVERYTHING where all is), and the
 // gaps in depth (gaps.glsl); the last two where the image has channels for them. A pyramid's level takes 2 x 2 texels
 // of the one below; a stack's level four texels of the one below, half a neighbourhood apart (Bitmask Soft Shadows,
-// Fig. 7). The first level reads the depth map; over quads each texel there stands for itself and its right and upper
-// neighbours.
+// Fig. 7). The first level reads the depth map. Over quads gaps are those between a texel and its right and upper
+// neighbours; with PN_CORNERS the ranges are over these four, too, as the descent wants its blocks.
 #include "shaders/precision.glsl"
 #include "space/limits.glsl"
 #if PN_FIRST
@@ -58,7 +58,12 @@ vec4 pn_range_of(ivec2 at) {
   if (max(two.x, two.y) <= PN_NOTHING) return vec4(PN_NOTHING, PN_NOTHING, PN_EVERYTHING, PN_NO_GAP);
   vec2 least = min(corners.xy, corners.zw);
   float there = min(min(pn_there(w[5]), pn_there(w[6])), min(pn_there(w[9]), pn_there(w[10])));
-  return vec4(max(two.x, two.y), min(least.x, least.y), there, pn_find_gaps(0, pn_maps, pn_source.z, at, w));
+  float gaps = pn_find_gaps(0, pn_maps, pn_source.z, at, w);
+#if PN_CORNERS
+  return vec4(max(two.x, two.y), min(least.x, least.y), there, gaps);
+#else
+  return vec4(w[5], w[5], pn_there(w[5]), gaps);
+#endif
 }
 #else
 vec4 pn_range_of(ivec2 at) {

@@ -2,7 +2,7 @@
 #ifndef PNI_SEARCH_PARAMETERS_H
 #define PNI_SEARCH_PARAMETERS_H
 
-#include "maps/list.h"
+#include "gather/gather.h"
 
 typedef enum { PNI_PRIMITIVE_PATCH, PNI_PRIMITIVE_QUAD, PNI_PRIMITIVE_QUAD_EXACT } pni_primitive;
 typedef enum { PNI_HIERARCHY_MSSM, PNI_HIERARCHY_HSM, PNI_HIERARCHY_NONE } pni_hierarchy;
@@ -17,8 +17,10 @@ extern const char *const pni_hierarchy_names[];
   }
 #define PNI_PARAMETER_CAP(source) \
   { \
-    "cap", "texels", "at most N x N primitives a pixel, coarser ones past it; 0 = no cap; with merge=0 only", source, \
-        PN_INT, 0, 4096, 0, NULL \
+    "cap", "texels", \
+        "at most N x N primitives in a pixel's window of each map, coarser ones past it; 0 = no cap; with merge=0 " \
+        "only", \
+        source, PN_INT, 0, 4096, 0, NULL \
   }
 #define PNI_PARAMETER_MERGE \
   { \
@@ -46,7 +48,13 @@ typedef struct {
   pni_hierarchy hierarchy;
   bool gaps, edges;
   double merge;
+  int cap;
 } pni_search_values;
+
+/* What a technique keeps for a pair: whether it told what it had to tell. */
+typedef struct {
+  bool told;
+} pni_search_state;
 
 /* What summarises the maps for such a search. Descent walks the pyramid, whatever narrows the window. */
 pni_range_kind pni_search_range(const pni_search_values *values);
@@ -54,5 +62,8 @@ pni_range_kind pni_search_range(const pni_search_values *values);
 float pni_search_focus(double percent);
 /* The lines search.glsl wants. Returns their length. */
 int pni_search_defines(const pni_search_values *values, char *out, size_t size);
+/* Tells the host, once, where windows may be too large to take every texel of them; job->pair_state is a
+ * pni_search_state. */
+void pni_search_tell(const pni_job *job, const pni_search_values *values);
 
 #endif

@@ -8,6 +8,7 @@
 //   PN_DESCENT    1: adaptive descent of the range pyramid; 0: every texel of the window, or of a coarser level past
 //                 the cap
 //   PN_REFINE     what narrows the window first: 0 nothing, 1 the range pyramid, 2 the range stack
+//   PN_TEXELS_MAX how many texels or blocks a receiver without descent looks at
 #include "search/window.glsl"
 
 // What the search did, for looking at (docs/techniques/bitmask.md): class (0 not searched, 1 lit, 2 umbra, 3
@@ -103,14 +104,6 @@ vec4 pn_stack_at(int light, highp sampler2DArray stack, int map, int layer, int 
 }
 #endif
 
-vec4 pn_range_of_texel(int light, highp sampler2DArray range, int map, int layer, ivec2 texel) {
-#if PN_REFINE == 2
-  return pn_stack_at(light, range, map, layer, 0, texel);
-#else
-  return texelFetch(range, ivec3(max(texel, ivec2(0)), pn_array_layer(light, map, layer)), 0);
-#endif
-}
-
 // ---- single primitives ---------------------------------------------------------------------------------------------
 
 bool pn_texel_hides(int light, pn_ShadedPoint r, int map, ivec2 texel, float w) {
@@ -158,24 +151,43 @@ float pn_edge(float scale, vec2 side_s, vec2 hide, vec2 inverse, vec2 hide_beyon
   return dot(weight, ends) / max(weight.x + weight.y, 1.0);
 }
 
-// The primitive of a block's four corner samples, or the next part of it. gaps: PN_NO_GAP too where no light passes
-// through them; left: corners not taken yet, those that hide nothing among them.
-pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, pn_Sheet sheet, ivec2 first, ivec2 last,
-                float gaps, inout int left) {
+// Four samples as a quad's corners, in the order of pn_Quad, relative to the receiver.
+struct pn_Corners {
+  vec2 low, high; // (s, t) of the first and of the last
+  vec4 dw;
+  vec4 present; // 1 where there is a sample
+  vec4 front;   // pn_plane_front, with the receiver's own uncertainty taken off
+};
+
+#if PN_DESCENT
+// The corner samples of a block of quads.
+pn_Corners pn_corners(highp sampler2DArray maps, pn_ShadedPoint r, pn_Sheet sheet, ivec2 first, ivec2 last) {
   ivec2 end = min(last, sheet.size - 1);
   vec4 depth = vec4(texelFetch(maps, ivec3(first, sheet.image), 0).r,
                     texelFetch(maps, ivec3(end.x, first.y, sheet.image), 0).r,
                     texelFetch(maps, ivec3(first.x, end.y, sheet.image), 0).r,
                     texelFetch(maps, ivec3(end, sheet.image), 0).r);
-  vec4 dw = sheet.dw_of_depth.x + sheet.dw_of_depth.y * depth;
-  vec2 low = pn_block_at(sheet, first), high = pn_block_at(sheet, last);
-  vec4 s = vec4(low.x, high.x, low.x, high.x), t = vec4(low.y, low.y, high.y, high.y);
-  vec4 front = r.n.x * s + r.n.y * t - r.k * dw - r.epsilon_plane - r.sigma * (abs(s) + abs(t) + r.reach * abs(dw));
+  pn_Corners k;
+  k.dw = sheet.dw_of_depth.x + sheet.dw_of_depth.y * depth;
+  k.low = pn_block_at(sheet, first);
+  k.high = pn_block_at(sheet, last);
+  vec4 s = vec4(k.low.x, k.high.x, k.low.x, k.high.x), t = vec4(k.low.y, k.low.y, k.high.y, k.high.y);
+  k.front =
+      r.n.x * s + r.n.y * t - r.k * k.dw - r.epsilon_plane - r.sigma * (abs(s) + abs(t) + r.reach * abs(k.dw));
   bvec2 past = greaterThanEqual(last, sheet.size);
   bvec4 outside = bvec4(false, past.x, past.y, past.x || past.y);
-  vec4 there = vec4(greaterThan(dw, vec4(r.epsilon_w))) * vec4(lessThan(depth, vec4(1.0))) *
-               vec4(greaterThan(depth, vec4(0.0))) * (1.0 - vec4(outside));
-  vec4 hide = there * vec4(greaterThan(front, vec4(0.0)));
+  k.present = vec4(lessThan(depth, vec4(1.0))) * vec4(greaterThan(depth, vec4(0.0))) * (1.0 - vec4(outside));
+  return k;
+}
+#endif
+
+// The primitive of four corners, or the next part of it. gaps: PN_NO_GAP too where no light passes through them; left:
+// corners not taken yet, those that hide nothing among them.
+pn_Quad pn_quad(int light, pn_ShadedPoint r, pn_Corners k, float gaps, inout int left) {
+  vec4 dw = k.dw, front = k.front, s = vec4(k.low.x, k.high.x, k.low.x, k.high.x),
+       t = vec4(k.low.y, k.low.y, k.high.y, k.high.y);
+  vec2 low = k.low, high = k.high;
+  vec4 hide = k.present * vec4(greaterThan(dw, vec4(r.epsilon_w))) * vec4(greaterThan(front, vec4(0.0)));
   pn_Quad q;
   q.whole = gaps >= PN_ENDLESS_REACH && hide == vec4(1.0);
   // A single corner stands for its quarter of the cell, as a patch would, and like one must rise above what a crease
@@ -205,28 +217,16 @@ pn_Quad pn_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, pn_Sheet
   return q;
 }
 
-// The quad of a texel and its right and upper neighbours, or the next part of it.
-void pn_texel_quad(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map,
-                   int layer, ivec2 texel, inout int left, inout pn_Cover c) {
-  vec4 w = pn_range_of_texel(light, range, map, layer, texel);
-  if (w.x <= r.m.z + r.epsilon_w) {
-    left = 0;
-    return;
-  }
-  pn_Sheet sheet = pn_sheet(light, r, map, layer);
-  vec2 low = pn_block_at(sheet, texel), high = pn_block_at(sheet, texel + 1);
-  bool bridged = pn_goes_on(sheet.density, low, high, max(w.z - r.m.z, r.epsilon_w) / (w.x - r.m.z), w.w);
-  pn_Quad q = pn_quad(light, maps, r, sheet, texel, texel + 1, bridged ? PN_NO_GAP : w.w, left);
-  if (!q.some) return;
-  if (q.whole)
-    pn_cover_quad(c, q);
-  else
-    pn_cover_rectangle(c, q.low, q.high);
-  pn_search_done.z += 1.0;
-}
 #endif
 
 vec2 pn_block_st(int light, int map, ivec2 texel) { return pn_map_st(light, map, vec2(texel) + PN_BLOCK_CORNER); }
+
+// Samples that a window's last quads have beyond its texels. For the descent ranges bring them along.
+#if PN_PRIMITIVE == PN_PATCH || PN_DESCENT
+#define PN_BEYOND 0
+#else
+#define PN_BEYOND 1
+#endif
 
 // ---- the window ----------------------------------------------------------------------------------------------------
 
@@ -248,14 +248,11 @@ int pn_stack_level(int extent) {
 }
 
 vec4 pn_window_range(int light, highp sampler2DArray stack, int map, int layer, ivec2 low, ivec2 high, bool four) {
+  high = min(high, pn_map_size(light, map) - 1);
   int extent = max(high.x - low.x, high.y - low.y) + 1;
-  if (!four) {
-    // The centre of a neighbourhood of even size is half a texel off; over the whole map that does not matter, and
-    // there is no level above it.
-    ivec2 size = pn_map_size(light, map);
-    int level = pn_stack_level(min(extent + 1, max(size.x, size.y)));
-    return pn_stack_at(light, stack, map, layer, level, (low + high + 1) / 2);
-  }
+  // Of an even number of texels the centre is the upper of the middle two, in windows as in neighbourhoods: so a window
+  // as wide as the neighbourhood is all of it.
+  if (!four) return pn_stack_at(light, stack, map, layer, pn_stack_level(extent), (low + high + 1) / 2);
   // Section 5: four neighbourhoods of half the size, pushed into the window's corners.
   int level = pn_stack_level((extent + 1) / 2);
   // texels of a neighbourhood before and after its centre
@@ -281,7 +278,7 @@ pn_Window pn_find_window(int light, highp sampler2DArray range, pn_ShadedPoint r
 #if PN_REFINE > 0
   for (int step = 0; step < 2; step++) {
     if (any(lessThan(window.high, window.low))) break;
-    window.w = pn_window_range(light, range, map, layer, window.low, window.high, step > 0);
+    window.w = pn_window_range(light, range, map, layer, window.low, window.high + PN_BEYOND, step > 0);
     if (window.w.x <= r.m.z + r.epsilon_w) break;
     pn_window_texels(light, r, map, window.w.x, window.low, window.high);
   }
@@ -296,6 +293,9 @@ bool pn_is_umbra(int light, pn_ShadedPoint r, int map, pn_Window window) {
   vec2 low = pn_block_st(light, map, window.low) - r.m.xy, high = pn_block_st(light, map, window.high + 1) - r.m.xy;
   // not cut off by the map's border
   bool inside = all(lessThanEqual(low, -reach)) && all(greaterThanEqual(high, reach));
+#if PN_BEYOND
+  inside = inside && all(lessThan(window.high + PN_BEYOND, pn_map_size(light, map))); // nothing is there
+#endif
 #if PN_PRIMITIVE != PN_PATCH
   float far = (window.w.y - r.m.z) / (window.w.x - r.m.z);
   inside = inside && pn_goes_on(pn_lights[light].maps[map].density, low, high, far, window.w.w);
@@ -306,68 +306,158 @@ bool pn_is_umbra(int light, pn_ShadedPoint r, int map, pn_Window window) {
 // ---- every texel ---------------------------------------------------------------------------------------------------
 
 #if !PN_DESCENT
-// Texels of a row that one turn of the loop takes: software GL ends a shader's loops after 65535 turns in all.
-#define PN_ROW 8
-#define PN_TEXELS_MAX 360000
+// Texels of all windows together, or of the blocks in their place: software GL ends a shader's loops after 65535 turns
+// in all, and a turn takes PN_STEP eight times. Past PN_TEXELS_MAX blocks are coarser, whatever the cap: the host is
+// told (pni_search_tell).
 
-// A texel of a coarser level past the cap, on the pyramid's fixed grid: nearest surface of its block, as one patch
-// (section 5).
-void pn_coarse_patch(int light, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer, ivec2 block,
-                     int level, inout pn_Cover c) {
+// The first texel that may be in the range of a block of 2^level texels a side, on the pyramid's fixed grid (section 5:
+// else neighbouring pixels would look at the same surface through different blocks).
+ivec2 pn_block_from(pn_Sheet sheet, int level, ivec2 block) {
+  ivec2 first = block << level;
 #if PN_REFINE == 2
-  float w = pn_stack_at(light, range, map, layer, level, (block << level) + ((1 << level) >> 1)).x;
+  // A block that the map's border cuts before its centre has a neighbourhood that lies closer, and has more in it.
+  int before = (1 << level) >> 1;
+  return max(min(first, sheet.size - 1 - before), ivec2(0));
 #else
-  float w = texelFetch(range, ivec3(block, pn_array_layer(light, map, layer)), level).r;
+  return first;
 #endif
-  float dw = w - r.m.z;
-  if (dw <= r.epsilon_w) return;
-  ivec2 first = block << level, last = min((block + 1) << level, pn_map_size(light, map));
-  vec2 low = pn_block_st(light, map, first), high = pn_block_st(light, map, last);
-  // The plane's largest value over the block is held against the block's largest w.
-  if (pn_front_range(r, low - r.m.xy, high - r.m.xy, dw, dw).x <= 0.0) return;
-  pn_add_patch(light, r, low, high, w, c);
 }
 
-int pn_level_for(ivec2 size, int cap) {
-  int level = 0;
-  while ((((size.x >> level) + 1) * ((size.y >> level) + 1) > PN_TEXELS_MAX ||
-          (cap > 0 && max(size.x >> level, size.y >> level) > cap)) && level < 12)
+vec4 pn_block_range(int light, highp sampler2DArray range, pn_Sheet sheet, int map, int layer, int level, ivec2 block) {
+  ivec2 first = block << level;
+  if (any(lessThan(block, ivec2(0))) || any(greaterThanEqual(first, sheet.size)))
+    return vec4(vec2(PN_NOTHING), PN_EVERYTHING, PN_NO_GAP);
+#if PN_REFINE == 2
+  return pn_stack_at(light, range, map, layer, level, first + ((1 << level) >> 1));
+#else
+  return texelFetch(range, ivec3(block, sheet.image), level);
+#endif
+}
+
+#if PN_PRIMITIVE == PN_PATCH
+// A block past the cap: its rectangle at its nearest sample's w, as one patch.
+void pn_coarse_patch(int light, highp sampler2DArray range, pn_ShadedPoint r, pn_Sheet sheet, int map, int layer,
+                     ivec2 block, int level, inout pn_Cover c) {
+  float w = pn_block_range(light, range, sheet, map, layer, level, block).x, dw = w - r.m.z;
+  if (dw <= r.epsilon_w) return;
+  ivec2 first = block << level, last = min((block + 1) << level, sheet.size);
+  // Where in the block the sample lies is not known: anywhere there it must lie before the receiver's plane.
+  vec2 least = pn_block_at(sheet, pn_block_from(sheet, level, block));
+  if (pn_front_range(r, least, pn_block_at(sheet, last), dw, dw).x <= 0.0) return;
+  pn_add_patch(light, r, pn_map_st(light, map, vec2(first)), pn_map_st(light, map, vec2(last)), w, c);
+}
+#else
+// Section 4 at any level: a quad between the centres of four neighbouring blocks, each at its block's nearest sample.
+// Level 0 has texels for blocks. Where in its block a sample lies is not known: its front is the least anywhere there.
+pn_Corners pn_block_corners(int light, highp sampler2DArray range, pn_ShadedPoint r, pn_Sheet sheet, int map,
+                            int layer, int level, ivec2 block, out float gaps) {
+  vec4 a = pn_block_range(light, range, sheet, map, layer, level, block);
+  vec4 b = pn_block_range(light, range, sheet, map, layer, level, block + ivec2(1, 0));
+  vec4 c = pn_block_range(light, range, sheet, map, layer, level, block + ivec2(0, 1));
+  vec4 d = pn_block_range(light, range, sheet, map, layer, level, block + 1);
+  vec4 w = vec4(a.x, b.x, c.x, d.x);
+  gaps = a.w;
+  pn_Corners k;
+  k.low = sheet.corner + ((vec2(block) + 0.5) * float(1 << level) - 0.5) * sheet.texel;
+  k.high = k.low + float(1 << level) * sheet.texel;
+  k.dw = w - r.m.z;
+  k.present = vec4(greaterThan(w, vec4(PN_NOTHING)));
+  // samples of both columns and rows of blocks, from and to
+  vec4 from = vec4(pn_block_at(sheet, pn_block_from(sheet, level, block)),
+                   pn_block_at(sheet, pn_block_from(sheet, level, block + 1)));
+  vec4 to = vec4(pn_block_at(sheet, min((block + 1) << level, sheet.size) - 1),
+                 pn_block_at(sheet, min((block + 2) << level, sheet.size) - 1));
+  vec4 plane = min(r.n.xyxy * from, r.n.xyxy * to), lever = max(abs(from), abs(to));
+  k.front = plane.xzxz + plane.yyww - r.k * k.dw - r.epsilon_plane -
+            r.sigma * (lever.xzxz + lever.yyww + r.reach * abs(k.dw));
+  return k;
+}
+
+// A quad of the scan, or the next part of it. Those of blocks are the paper's: all corners must hide, and gaps are
+// bridged. Drawn out to the nearest samples of their blocks they cover more than what is there, without the parts of
+// others too; and which samples lie on one surface is not known.
+void pn_scan_quad(int light, highp sampler2DArray range, pn_ShadedPoint r, pn_Sheet sheet, int map, int layer,
+                  ivec2 block, int level, inout int left, inout pn_Cover c) {
+  float gaps;
+  pn_Corners k = pn_block_corners(light, range, r, sheet, map, layer, level, block, gaps);
+  vec4 near = mix(vec4(PN_NOTHING), k.dw, k.present), far = mix(vec4(PN_EVERYTHING), k.dw, k.present);
+  float most = max(max(near.x, near.y), max(near.z, near.w)), least = min(min(far.x, far.y), min(far.z, far.w));
+  if (most <= r.epsilon_w) {
+    left = 0;
+    return;
+  }
+  bool bridged = level > 0 || pn_goes_on(sheet.density, k.low, k.high, max(least, r.epsilon_w) / most, gaps);
+  pn_Quad q = pn_quad(light, r, k, bridged ? PN_NO_GAP : gaps, left);
+  if (level > 0) left = 0;
+  if (!q.some || (level > 0 && !q.whole)) return;
+  if (q.whole)
+    pn_cover_quad(c, q);
+  else
+    pn_cover_rectangle(c, q.low, q.high);
+  pn_search_done.z += 1.0;
+}
+#endif
+
+// The primitives of a level that touch the window, both included. A quad reaches from its block's centre to the next
+// one's.
+void pn_blocks_of(pn_Window window, int level, out ivec2 first, out ivec2 last) {
+#if PN_PRIMITIVE == PN_PATCH
+  first = window.low >> level;
+  last = window.high >> level;
+#else
+  int centre = (1 << level) >> 1;
+  first = (window.low - centre) >> level;
+  last = (window.high + min(level, 1) - centre) >> level;
+#endif
+}
+
+// The finest level that has no more than cap primitives an axis in the window. A quad needs two blocks.
+int pn_level_for(int light, pn_Window window, int cap, out ivec2 first, out ivec2 last) {
+#if PN_PRIMITIVE != PN_PATCH
+  if (cap == 1) cap = 2;
+#endif
+  int most = PN_TEXELS_MAX / (pn_map_count(light) * pn_layers(light)), level = 0;
+  pn_blocks_of(window, level, first, last);
+  for (ivec2 size = last - first + 1; size.x * size.y > most || (cap > 0 && max(size.x, size.y) > cap);
+       size = last - first + 1) {
     level++;
+    pn_blocks_of(window, level, first, last);
+  }
   return level;
 }
 
 // One primitive, or a part of one: of those left, none when it is done.
-void pn_scan_one(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map,
-                 int layer, ivec2 at, int level, inout int left, inout pn_Cover c) {
-  if (level > 0) {
-    left = 0;
-    pn_coarse_patch(light, range, r, map, layer, at, level, c);
-    return;
-  }
+void pn_scan_one(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, pn_Sheet sheet,
+                 int map, int layer, ivec2 at, int level, inout int left, inout pn_Cover c) {
 #if PN_PRIMITIVE == PN_PATCH
   left = 0;
-  pn_texel_patch(light, maps, r, map, layer, at, c);
+  if (level > 0)
+    pn_coarse_patch(light, range, r, sheet, map, layer, at, level, c);
+  else
+    pn_texel_patch(light, maps, r, map, layer, at, c);
 #else
-  pn_texel_quad(light, maps, range, r, map, layer, at, left, c);
+  pn_scan_quad(light, range, r, sheet, map, layer, at, level, left, c);
 #endif
 }
 
 // A step of the scan: the primitive at a texel of the row, or the next part of it.
-void pn_scan_step(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map,
-                  int layer, int level, inout ivec2 at, int end, inout int left, inout pn_Cover c) {
+void pn_scan_step(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, pn_Sheet sheet,
+                  int map, int layer, int level, inout ivec2 at, int end, inout int left, inout pn_Cover c) {
   if (at.x > end) return;
-  pn_scan_one(light, maps, range, r, map, layer, at, level, left, c);
+  pn_scan_one(light, maps, range, r, sheet, map, layer, at, level, left, c);
   if (left != 0) return;
   at.x++;
   left = PN_ALL_CORNERS;
   pn_search_done.y += 1.0;
 }
-#define PN_STEP pn_scan_step(light, maps, range, r, map, layer, level, at, last.x, left, c);
+#define PN_STEP pn_scan_step(light, maps, range, r, sheet, map, layer, level, at, last.x, left, c);
 
 void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r, int map, int layer,
              pn_Window window, int cap, inout pn_Cover c) {
-  int level = pn_level_for(window.high - window.low + 1, cap), left = PN_ALL_CORNERS;
-  ivec2 first = window.low >> level, last = window.high >> level;
+  int left = PN_ALL_CORNERS;
+  pn_Sheet sheet = pn_sheet(light, r, map, layer);
+  ivec2 first, last;
+  int level = pn_level_for(light, window, cap, first, last);
   for (ivec2 at = first; at.y <= last.y; at = ivec2(first.x, at.y + 1))
     while (at.x <= last.x) {
       PN_STEP PN_STEP PN_STEP PN_STEP PN_STEP PN_STEP PN_STEP PN_STEP
@@ -496,7 +586,7 @@ void pn_spread(inout pn_Quad q) {
 bool pn_take_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, pn_Sheet sheet, inout pn_Walk walk,
                   inout pn_Cover c, out pn_Quad quad) {
   ivec2 first = walk.node << walk.level, last = (walk.node + 1) << walk.level;
-  quad = pn_quad(light, maps, r, sheet, first, last, walk.gaps, walk.left);
+  quad = pn_quad(light, r, pn_corners(maps, r, sheet, first, last), walk.gaps, walk.left);
   if (walk.left == 0) pn_walk(walk, false);
   if (!quad.some) return false;
 #if PN_PRIMITIVE == PN_QUAD_EXACT

@@ -13,10 +13,11 @@ static double w_at(const pni_maps *maps, int map, const float *depth, int x, int
   return d <= 0 || d >= 1 ? -1e30 : maps->block.maps[map].w_of_depth[0] + maps->block.maps[map].w_of_depth[1] * d;
 }
 
-/* Over texels from (x0, y0) up to, not including, (x1, y1); over quads each brings its right and upper neighbours.
+/* Over texels from (x0, y0) up to, not including, (x1, y1); for a descent over quads each brings its right and upper
+ * neighbours.
  * found: largest, smallest, and where it is kept the smallest of what is there. */
 static void assert_range(const pni_maps *maps, int map, const float *depth, const int box[4], const float *found) {
-  int more = maps->want.range.quads ? 1 : 0;
+  int more = maps->want.range.quads && maps->want.range.least_there ? 1 : 0;
   double most = -1e30, least = 1e30, there = 1e30;
   for (int y = box[1]; y < box[3] + more; y++)
     for (int x = box[0]; x < box[2] + more; x++) {

@@ -1,5 +1,6 @@
-/* Searches that merge nothing, against every texel of every map taken one by one on the CPU in double. What float
- * rounding leaves open is counted on both sides: GL's result must lie between what is surely hidden and what may be. */
+/* Searches that merge nothing, against every texel of every map taken one by one on the CPU in double, and past the
+ * cap against every block. What float rounding leaves open is counted on both sides: GL's result must lie between what
+ * is surely hidden and what may be. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -255,6 +256,7 @@ typedef struct {
   bool edges;
   primitive primitive;
   bool two_sided; /* the last layer has the farthest surfaces */
+  int cap;
 } shape;
 
 static void add_patch(const atlas *a, const receiver *r, int map, int layer, int x, int y, field *f) {
@@ -385,6 +387,123 @@ static void add_quad(const atlas *a, const receiver *r, int map, int layer, int 
   cover_triangle(f, p[1], p[3], p[2], open_at(r, least));
 }
 
+/* ---- past the cap ---- */
+
+/* The nearest sample of a block of size x size texels, put at the middle of the block; where in the block it was is not
+ * known: between low and high. */
+typedef struct {
+  place q;
+  bool there;
+  double low[2], high[2];
+} block;
+
+static block block_of(const atlas *a, int map, int layer, int size, int x, int y, double margin) {
+  const pni_map_block *m = &a->block->maps[map];
+  const int at[2] = {x, y}, count[2] = {a->width, a->height};
+  block b = {
+      .q = {m->origin[0] + (x + 0.5) * size / m->density[0], m->origin[1] + (y + 0.5) * size / m->density[1], -1e30}};
+  for (int c = 0; c < 2; c++) {
+    b.low[c] = m->origin[c] + (at[c] * size + 0.5 - margin) / m->density[c];
+    b.high[c] = m->origin[c] + (fmin((at[c] + 1) * size, count[c]) - 0.5 + margin) / m->density[c];
+  }
+  for (int i = 0; i < size * size; i++) {
+    place q;
+    if (!sample_of(a, map, layer, x * size + i % size, y * size + i / size, &q)) continue;
+    b.q.w = fmax(b.q.w, q.w);
+    b.there = true;
+  }
+  return b;
+}
+
+/* Whether it hides light, wherever in its block it lies: the receiver's own plane, which has its nearest point at a
+ * corner of the block, must not. What uncertain normals do is taken at the farthest corner. */
+static int block_hides(const receiver *r, const block *b) {
+  double lever[2] = {fmax(fabs(b->low[0] - r->m.s), fabs(b->high[0] - r->m.s)),
+                     fmax(fabs(b->low[1] - r->m.t), fabs(b->high[1] - r->m.t))};
+  int least = b->there ? YES : NO;
+  for (int i = 0; i < 4 && least; i++) {
+    receiver at = *r;
+    place q = {i & 1 ? b->high[0] : b->low[0], i & 2 ? b->high[1] : b->low[1], b->q.w};
+    double more = r->sigma * (lever[0] + lever[1] - fabs(q.s - r->m.s) - fabs(q.t - r->m.t));
+    at.plane_least += more;
+    at.plane_most += more;
+    int how = hides(&at, &q, false, 0);
+    if (how < least) least = how;
+  }
+  return least;
+}
+
+static void add_block_patch(const atlas *a, const receiver *r, int map, int layer, int size, int x, int y, field *f) {
+  block k = block_of(a, map, layer, size, x, y, 0.5);
+  int how = block_hides(r, &k);
+  double dw = k.q.w - r->m.w;
+  if (how == NO || dw <= 0) return;
+  box b;
+  for (int c = 0; c < 2; c++) {
+    b.low[c] = on_light(r, c, k.low[c], dw);
+    b.high[c] = on_light(r, c, k.high[c], dw);
+  }
+  cover_box(f, &b, open_at(r, dw), how);
+}
+
+/* A microquad between the middles of four blocks, all of which must hide; what lies between them is bridged. */
+static void add_block_quad(const atlas *a, const receiver *r, int map, int layer, int size, int x, int y, field *f) {
+  place q[4];
+  int hide[4], count[3] = {0};
+  double dw[4], least = 1e30;
+  for (int i = 0; i < 4; i++) {
+    block k = block_of(a, map, layer, size, x + (i & 1), y + (i >> 1), 0);
+    q[i] = k.q;
+    dw[i] = q[i].w - r->m.w;
+    hide[i] = block_hides(r, &k);
+    count[hide[i]]++;
+    least = fmin(least, dw[i]);
+  }
+  if (count[NO]) return;
+  if (count[MAYBE]) maybe_quad(r, q, hide, dw, f);
+  else {
+    box b = quad_box(r, q, hide, dw);
+    cover_box(f, &b, open_at(r, least), YES);
+  }
+}
+
+/* How many primitives of blocks of that size meet what the search looks at along an axis: all that casters could need
+ * who are as near to the light as one may be, rounded out to whole primitives of single texels, inside the map. Less
+ * than 0: rounding leaves it open. */
+static int primitives_across(const atlas *a, const receiver *r, int axis, int size, const shape *how) {
+  const pni_map_block *m = &a->block->maps[0];
+  double reach = r->half[axis] * (a->block->w_near - r->m.w), middle = axis ? r->m.t : r->m.s,
+         begin = how->primitive == PATCH ? 0 : 0.5,
+         from = (middle - reach - m->origin[axis]) * m->density[axis] - begin,
+         to = (middle + reach - m->origin[axis]) * m->density[axis] - begin, last = (axis ? a->height : a->width) - 1;
+  const double rounding = 1e-3;
+  if (fabs(from - round(from)) < rounding || fabs(to - round(to)) < rounding) return -1;
+  from = fmax(floor(from), 0) + begin;
+  to = fmin(floor(to), last) + 1 + begin;
+  int count = 0;
+  for (int i = -2; i * size <= last + 1; i++)
+    count += (i + begin) * size < to && (i + 1 + begin) * size > from && from < to;
+  return count;
+}
+
+/* Texels a side of the smallest blocks that the cap admits; 0: rounding leaves it open. */
+static int block_size(const atlas *a, const receiver *r, const shape *how) {
+  for (int size = 1;; size *= 2) {
+    int across = primitives_across(a, r, 0, size, how), up = primitives_across(a, r, 1, size, how);
+    if (across < 0 || up < 0) return 0;
+    if (how->cap == 0 || (across <= how->cap && up <= how->cap)) return size;
+  }
+}
+
+static void cover_blocks(const atlas *a, const receiver *r, int size, const shape *how, field *f) {
+  for (int layer = 0; layer < a->layers; layer++)
+    for (int y = -1; y * size < a->height; y++)
+      for (int x = -1; x * size < a->width; x++) {
+        if (how->primitive == PATCH) add_block_patch(a, r, 0, layer, size, x, y, f);
+        else add_block_quad(a, r, 0, layer, size, x, y, f);
+      }
+}
+
 static void cover_all(const atlas *a, const receiver *r, const shape *how, field *f) {
   for (int map = 0; map < a->maps; map++)
     for (int layer = 0; layer < a->layers; layer++)
@@ -398,7 +517,7 @@ static void cover_all(const atlas *a, const receiver *r, const shape *how, field
 /* ---- comparing ---- */
 
 typedef struct {
-  int compared, hidden, open, outside;
+  int compared, hidden, open, outside, coarse;
   double worst;
 } tally;
 
@@ -493,7 +612,11 @@ static void look(stage *s, const char *spec, const shape *how, int code, int rou
     if (!axes.sun && dot(sub(p, axes.origin), axes.z) < 0.05) continue;
     receiver r = receiver_at(&a, &axes, p, view_normal(&v, i % PIXELS, i / PIXELS), (double)s->receiver->normal_error);
     field f = {.grid = code == 17 ? 16 : code, .jittered = code == 17};
-    cover_all(&a, &r, how, &f);
+    int size = how->cap ? block_size(&a, &r, how) : 1;
+    if (size == 0) continue;
+    t->coarse += size > 1;
+    if (size > 1) cover_blocks(&a, &r, size, how, &f);
+    else cover_all(&a, &r, how, &f);
     compare_pixel(&r, &f, visibility[i], t);
   }
   if (t->outside > outside)
@@ -506,22 +629,28 @@ static void look(stage *s, const char *spec, const shape *how, int code, int rou
   soup_free(&seen);
 }
 
-static void check(const char *primitive_name, primitive p, bool edges, const char *samples, int code, const char *maps,
-                  int rounds) {
+static void check_cap(const char *primitive_name, primitive p, bool edges, const char *samples, int code,
+                      const char *maps, int cap, int rounds) {
   char spec[128];
   tally t = {0};
-  shape how = {edges, p, strcmp(maps, "two-sided") == 0};
-  snprintf(spec, sizeof spec, "bitmask:merge=0,hierarchy=none,primitive=%s,edges=%s,samples=%s,maps=%s", primitive_name,
-           edges ? "on" : "off", samples, maps);
+  shape how = {edges, p, strcmp(maps, "two-sided") == 0, cap};
+  snprintf(spec, sizeof spec, "bitmask:merge=0,hierarchy=none,primitive=%s,edges=%s,samples=%s,maps=%s,cap=%d",
+           primitive_name, edges ? "on" : "off", samples, maps, cap);
   stage s;
   stage_open(&s);
   for (int round = 0; round < rounds; round++) look(&s, spec, &how, code, round, &t);
   stage_close(&s);
-  print_message("%s: %d pixels, %d in shadow, %.3f samples open a pixel, %d outside\n", spec, t.compared, t.hidden,
-                (double)t.open / t.compared, t.outside);
+  print_message("%s: %d pixels, %d in shadow, %d by blocks, %.3f samples open a pixel, %d outside\n", spec, t.compared,
+                t.hidden, t.coarse, (double)t.open / t.compared, t.outside);
   assert_true(t.compared > 64 * rounds && t.hidden > t.compared / 20);
   assert_true(t.open < 0.02 * code * code * t.compared); /* else the comparison says little */
+  assert_true(cap == 0 || t.coarse > t.compared / 4);
   assert_int_equal(t.outside, 0);
+}
+
+static void check(const char *primitive_name, primitive p, bool edges, const char *samples, int code, const char *maps,
+                  int rounds) {
+  check_cap(primitive_name, p, edges, samples, code, maps, 0, rounds);
 }
 
 static void test_patches(void **state) {
@@ -544,8 +673,18 @@ static void test_exact_quads(void **state) {
   check("quad-exact", EXACT, true, "32", 32, "two-sided", 6);
 }
 
+/* Coarse blocks hide the more the less the cap is: patches grow to their nearest sample's w. */
+static void test_cap(void **state) {
+  (void)state;
+  check_cap("patch", PATCH, true, "16j", 17, "front", 4, 10);
+  check_cap("patch", PATCH, true, "16", 16, "two-sided", 3, 10);
+  check_cap("quad", QUAD, false, "16j", 17, "front", 4, 10);
+  check_cap("quad", QUAD, true, "32", 32, "two-sided", 3, 10);
+  check_cap("quad", QUAD, true, "16", 16, "layers,layers=2", 2, 10);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_patches), cmocka_unit_test(test_quads),
-                                     cmocka_unit_test(test_exact_quads)};
+                                     cmocka_unit_test(test_exact_quads), cmocka_unit_test(test_cap)};
   return GL_RUN("searches against every texel", tests);
 }

@@ -34,7 +34,8 @@ static pni_search_values search_values(const double *values) {
                              .hierarchy = (pni_hierarchy)values[HIERARCHY],
                              .gaps = values[GAPS] != 0 && values[PRIMITIVE] == PNI_PRIMITIVE_PATCH,
                              .edges = values[EDGES] != 0,
-                             .merge = values[MERGE]};
+                             .merge = values[MERGE],
+                             .cap = (int)values[CAP]};
 }
 
 static void want(const double *values, pni_maps_want *out) {
@@ -48,6 +49,12 @@ static void defines(const double *values, char *out, size_t size) {
   pni_search_defines(&search, out, size);
 }
 
+static pn_result draw(const pni_job *job) {
+  pni_search_values search = search_values(job->values);
+  pni_search_tell(job, &search);
+  return pni_gather(job);
+}
+
 const pni_technique_class pni_technique_backprojection = {
     .table = {.name = "backprojection",
               .title = "soft shadow mapping by backprojection",
@@ -58,6 +65,7 @@ const pni_technique_class pni_technique_backprojection = {
               .self_shadows = 1},
     .want = want,
     .preset = preset,
-    .draw = pni_gather,
+    .draw = draw,
     .gathering = {.shader = "techniques/backprojection/backprojection.glsl", .defines = defines, .searches = true},
+    .pair_kind = {.bytes = sizeof(pni_search_state)},
 };

@@ -53,7 +53,8 @@ static pni_search_values search_values(const double *values) {
                              .hierarchy = (pni_hierarchy)values[HIERARCHY],
                              .gaps = false,
                              .edges = values[EDGES] != 0,
-                             .merge = values[MERGE]};
+                             .merge = values[MERGE],
+                             .cap = (int)values[CAP]};
 }
 
 static void want(const double *values, pni_maps_want *out) {
@@ -72,6 +73,12 @@ static void defines(const double *values, char *out, size_t size) {
   snprintf(out + length, size - (size_t)length, "PN_SAMPLES %d\n", codes[(int)values[SAMPLES]]);
 }
 
+static pn_result draw(const pni_job *job) {
+  pni_search_values search = search_values(job->values);
+  pni_search_tell(job, &search);
+  return pni_gather(job);
+}
+
 const pni_technique_class pni_technique_bitmask = {
     .table = {.name = "bitmask",
               .title = "bitmask soft shadows",
@@ -82,6 +89,7 @@ const pni_technique_class pni_technique_bitmask = {
               .self_shadows = 1},
     .want = want,
     .preset = preset,
-    .draw = pni_gather,
+    .draw = draw,
     .gathering = {.shader = "techniques/bitmask/bitmask.glsl", .defines = defines, .searches = true},
+    .pair_kind = {.bytes = sizeof(pni_search_state)},
 };
