@@ -261,6 +261,14 @@ static void blit_depth(pni_gpu *gpu, const pni_texture *from, const pni_texture 
   (0, 0, from->width, from->height, 0, 0, from->width, from->height, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
 }
 
+void pni_copy_part_to_layer(pni_gpu *gpu, const pni_texture *from, const pni_texture *to, int layer, int x, int y,
+                            int width, int height) {
+  if (gpu->plan.on) return;
+  pni_read_from(gpu, from, 0, 0);
+  pni_bind_scratch(gpu, target_of(to), to->id);
+  GL(gpu, CopyTexSubImage3D)(target_of(to), 0, x, y, layer, x, y, width, height);
+}
+
 void pni_copy_to_layer(pni_gpu *gpu, const pni_texture *from, const pni_texture *to, int layer) {
   if (gpu->plan.on) return;
   pni_read_from(gpu, from, 0, 0);

@@ -67,6 +67,9 @@ void pni_read_from(pni_gpu *gpu, const pni_texture *texture, int level, int laye
 /* A colour or depth texture into a layer of an array. Images of an array that are made from one another are drawn
  * aside and copied in: reading one layer while drawing another is undefined in GL 3.3. */
 void pni_copy_to_layer(pni_gpu *gpu, const pni_texture *from, const pni_texture *to, int layer);
+/* Texels of a colour texture, from (x, y) on, to the same place. */
+void pni_copy_part_to_layer(pni_gpu *gpu, const pni_texture *from, const pni_texture *to, int layer, int x, int y,
+                            int width, int height);
 
 /* Accounts for bytes in GL against the host's limit; pni_memory_give takes them off again. */
 pn_result pni_memory_take(pni_gpu *gpu, size_t bytes);

@@ -23,7 +23,10 @@ static pni_format range_format(const pni_range_kind *kind) {
   return kind->quads || kind->least_there ? PNI_RGBA32F : PNI_RG32F;
 }
 
-/* The pyramid's first level has a texel for each of the map's, padded to powers of two; the stack has every level at
+static int whole_blocks(int size) { return (size + PNI_HYBRID_BLOCK - 1) / PNI_HYBRID_BLOCK * PNI_HYBRID_BLOCK; }
+
+/* The hybrid's first level has a texel for each of the map's, padded to whole blocks, in a layer of its own; the next
+ * layer has all levels above it, as range_place says. The pyramid's first level has a texel for each of the map's, padded to powers of two; the stack has every level at
  * full size, as array layers. */
 pn_result pni_range_shape(pni_gpu *gpu, pni_texture *texture, const pni_range_kind *kind, int layers, int width,
                           int height) {
@@ -35,6 +38,9 @@ pn_result pni_range_shape(pni_gpu *gpu, pni_texture *texture, const pni_range_ki
   if (kind->structure == PNI_RANGE_STACK)
     return pni_texture_shape(gpu, texture, "range stack", range_format(kind), width, height,
                              layers * level_count(power_above(larger(width, height))), 1);
+  if (kind->structure == PNI_RANGE_HYBRID)
+    return pni_texture_shape(gpu, texture, "range hybrid", range_format(kind), whole_blocks(width),
+                             whole_blocks(height), 2 * layers, 1);
   pni_texture_spare(gpu, texture);
   return PN_OK;
 }
@@ -48,7 +54,7 @@ enum { DEFINES = 64 };
 
 static pni_program_key range_program(const pni_range_kind *kind, bool first, char defines[DEFINES]) {
   snprintf(defines, DEFINES, "PN_FIRST %d\nPN_STACK %d\nPN_QUADS %d\nPN_CORNERS %d\n", first,
-           kind->structure == PNI_RANGE_STACK, kind->quads, kind->quads && kind->least_there);
+           kind->structure != PNI_RANGE_PYRAMID, kind->quads, kind->quads && kind->least_there);
   return (pni_program_key){.fragment = "maps/range.frag.glsl", .defines = defines};
 }
 
@@ -87,6 +93,8 @@ static pn_result reduce(pni_gpu *gpu, const pni_texture *range, const pni_maps *
   if (result != PN_OK || part.width == 0) return result;
   pni_set_texture(gpu, "pn_range", range);
   pni_set_ints(gpu, "pn_source", layer, level, 0, 0);
+  pni_set_ints(gpu, "pn_place", 0, 0, 0, 0);
+  pni_set_ints(gpu, "pn_region", 0, 0, larger(range->width >> (level - 1), 1), larger(range->height >> (level - 1), 1));
   pni_draw_screen(gpu);
   return PN_OK;
 }
@@ -126,9 +134,10 @@ static void set_source(pni_gpu *gpu, const pni_maps *maps, int layer, int level)
 static pn_result draw_first(pni_gpu *gpu, pni_maps *maps, int layer) {
   const pni_texture *range = &maps->range;
   char defines[DEFINES];
+  int image = maps->want.range.structure == PNI_RANGE_HYBRID ? 2 * layer : layer;
   pni_pass pass = {.name = "range",
                    .program = range_program(&maps->want.range, true, defines),
-                   .color = {pni_image_of(range, 0, layer)},
+                   .color = {pni_image_of(range, 0, image)},
                    .width = range->width,
                    .height = range->height};
   pni_part part = part_of_level(maps, layer, 0, range->width, range->height);
@@ -160,6 +169,7 @@ static pn_result draw_stack(pni_gpu *gpu, pni_maps *maps, int layer, int level, 
   if (result != PN_OK) return result;
   set_source(gpu, maps, layer, level);
   pni_set_ints(gpu, "pn_place", layer * levels + level - 1, level, 0, 0);
+  pni_set_ints(gpu, "pn_region", 0, 0, range->width, range->height);
   pni_set_texture(gpu, "pn_maps", &maps->depth);
   pni_set_texture(gpu, "pn_range", range);
   pni_draw_screen(gpu);
@@ -178,6 +188,58 @@ static pn_result build_stack(pni_gpu *gpu, pni_maps *maps) {
   return result;
 }
 
+/* Where a level of the hybrid above its first one lies in its layer: 4 x 4 cells, as large as the grid of blocks. The
+ * second level takes four of them; the other twelve are as many as maps of 8192 texels need. */
+static pni_part range_place(const pni_texture *range, int level) {
+  int width = range->width / 4, height = range->height / 4, cell = level - 2;
+  if (level == 1) return (pni_part){0, 0, 2 * width, 2 * height};
+  int x = cell < 4 ? 2 + cell % 2 : cell % 4, y = cell < 4 ? cell / 2 : 1 + cell / 4;
+  return (pni_part){x * width, y * height, width, height};
+}
+
+static int hybrid_levels(const pni_texture *range) {
+  return 2 + level_count(power_above(larger(range->width, range->height) / PNI_HYBRID_BLOCK));
+}
+
+/* Drawn aside and copied in, like a stack's. */
+static pn_result draw_hybrid(pni_gpu *gpu, pni_maps *maps, int layer, int level) {
+  const pni_texture *range = &maps->range;
+  bool reduces = level <= 2;
+  pni_part from = level > 1 ? range_place(range, level - 1) : (pni_part){0, 0, range->width, range->height},
+           to = range_place(range, level);
+  char defines[DEFINES];
+  pni_range_kind kind = {.structure = reduces ? PNI_RANGE_PYRAMID : PNI_RANGE_STACK};
+  pni_pass pass = {.name = "range hybrid",
+                   .program = range_program(&kind, false, defines),
+                   .color = {pni_image_of(&maps->aside, 0, 0)},
+                   .width = range->width,
+                   .height = range->height,
+                   .part = &to};
+  pn_result result = pni_pass_begin(gpu, &pass);
+  if (result != PN_OK) return result;
+  int source = 2 * layer + (level > 1);
+  pni_set_ints(gpu, "pn_source", source, 0, 0, 0);
+  pni_set_ints(gpu, "pn_place", source, level - 2, to.x, to.y);
+  pni_set_ints(gpu, "pn_region", from.x, from.y, from.width, from.height);
+  pni_set_texture(gpu, "pn_range", range);
+  pni_draw_screen(gpu);
+  pni_copy_part_to_layer(gpu, &maps->aside, range, 2 * layer + 1, to.x, to.y, to.width, to.height);
+  return PN_OK;
+}
+
+static pn_result build_hybrid(pni_gpu *gpu, pni_maps *maps) {
+  const pni_texture *range = &maps->range;
+  pn_result result =
+      pni_texture_shape(gpu, &maps->aside, "range hybrid, aside", range->format, range->width, range->height, 0, 1);
+  for (int layer = 0; layer < range->layers / 2 && result == PN_OK; layer++) {
+    result = draw_first(gpu, maps, layer);
+    for (int level = 1; level < hybrid_levels(range) && result == PN_OK; level++)
+      result = draw_hybrid(gpu, maps, layer, level);
+  }
+  return result;
+}
+
 pn_result pni_range_build(pni_gpu *gpu, pni_maps *maps) {
-  return maps->want.range.structure == PNI_RANGE_STACK ? build_stack(gpu, maps) : build_pyramid(gpu, maps);
+  if (maps->want.range.structure == PNI_RANGE_STACK) return build_stack(gpu, maps);
+  return maps->want.range.structure == PNI_RANGE_HYBRID ? build_hybrid(gpu, maps) : build_pyramid(gpu, maps);
 }

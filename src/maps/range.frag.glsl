@@ -15,7 +15,10 @@ uniform highp sampler2DArray pn_maps;
 uniform highp sampler2DArray pn_range;
 #endif
 uniform ivec4 pn_source; // layer in the array of maps, level drawn, map, layer in the map
-uniform ivec4 pn_place;  // stack: array layer of the level below, level drawn
+uniform ivec4 pn_place;  // stack: array layer of the level below, level drawn; where in the image it begins
+#if !PN_FIRST
+uniform ivec4 pn_region; // of the level below: where in the image it begins, size
+#endif
 layout(location = 0) out vec4 pn_out;
 
 vec4 pn_join(vec4 a, vec4 b) { return vec4(max(a.x, b.x), min(a.yzw, b.yzw)); }
@@ -80,18 +83,24 @@ void main() {
 #elif PN_STACK
   // Level i lies centred: from 2^(i-1) before the texel to 2^(i-1) - 1 after it. Its four parts of level i - 1 are
   // centred a quarter aside; the first level's parts are the texel and those before it. The border is clamped.
-  ivec2 last = textureSize(pn_range, 0).xy - 1;
+  at -= pn_place.zw;
+  ivec2 last = pn_region.zw - 1;
   int step = pn_place.y > 1 ? 1 << (pn_place.y - 2) : 0;
   ivec2 a = clamp(at - (pn_place.y > 1 ? step : 1), ivec2(0), last), b = clamp(at + step, ivec2(0), last);
+  a += pn_region.xy;
+  b += pn_region.xy;
   vec4 range = texelFetch(pn_range, ivec3(a, pn_place.x), 0);
   range = pn_join(range, texelFetch(pn_range, ivec3(b.x, a.y, pn_place.x), 0));
   range = pn_join(range, texelFetch(pn_range, ivec3(a.x, b.y, pn_place.x), 0));
   range = pn_join(range, texelFetch(pn_range, ivec3(b, pn_place.x), 0));
 #else
-  ivec2 last = textureSize(pn_range, 0).xy - 1;
+  at -= pn_place.zw;
+  ivec2 last = pn_region.zw - 1;
   vec4 range = vec4(PN_NOTHING, vec3(PN_EVERYTHING));
-  for (int i = 0; i < 4; i++)
-    range = pn_join(range, texelFetch(pn_range, ivec3(min(2 * at + ivec2(i & 1, i >> 1), last), pn_source.x), 0));
+  for (int i = 0; i < 4; i++) {
+    ivec2 texel = pn_region.xy + min(2 * at + ivec2(i & 1, i >> 1), last);
+    range = pn_join(range, texelFetch(pn_range, ivec3(texel, pn_source.x), 0));
+  }
 #endif
   pn_out = range;
 }

@@ -2,7 +2,7 @@
 
 #include <stdio.h>
 
-const char *const pni_hierarchy_names[] = {"mssm", "hsm", "none", NULL};
+const char *const pni_hierarchy_names[] = {"mssm", "hsm", "hybrid", "none", NULL};
 
 /* Texels that a receiver looks at in all maps together, where nothing is merged: as many as software GL lets loops turn
  * for. */
@@ -12,19 +12,24 @@ enum { TEXELS_MAX = 360000 };
  * scan of every texel would not fit, a descent that merges nothing does. */
 static bool descends(const pni_search_values *v) { return v->merge > 0 || v->primitive == PNI_PRIMITIVE_QUAD_EXACT; }
 
+/* Descent walks the pyramid, whatever narrows the window; where nothing does, gaps and blocks are there. */
+static pni_range_structure structure(const pni_search_values *v) {
+  if (!descends(v) && v->hierarchy == PNI_HIERARCHY_MSSM) return PNI_RANGE_STACK;
+  return !descends(v) && v->hierarchy == PNI_HIERARCHY_HYBRID ? PNI_RANGE_HYBRID : PNI_RANGE_PYRAMID;
+}
+
 pni_range_kind pni_search_range(const pni_search_values *v) {
-  bool descent = descends(v), stack = v->hierarchy == PNI_HIERARCHY_MSSM && !descent;
-  return (pni_range_kind){stack ? PNI_RANGE_STACK : PNI_RANGE_PYRAMID, v->primitive != PNI_PRIMITIVE_PATCH, descent};
+  return (pni_range_kind){structure(v), v->primitive != PNI_PRIMITIVE_PATCH, descends(v)};
 }
 
 float pni_search_focus(double percent) { return percent < 100 ? (float)(0.01 * percent) : 0; }
 
 int pni_search_defines(const pni_search_values *v, char *out, size_t size) {
-  bool descent = descends(v);
-  int refine = v->hierarchy == PNI_HIERARCHY_NONE ? 0 : v->hierarchy == PNI_HIERARCHY_MSSM && !descent ? 2 : 1;
+  static const int ways[] = {[PNI_RANGE_PYRAMID] = 1, [PNI_RANGE_STACK] = 2, [PNI_RANGE_HYBRID] = 3};
+  int refine = v->hierarchy == PNI_HIERARCHY_NONE ? 0 : ways[structure(v)];
   return snprintf(out, size,
                   "PN_PRIMITIVE %d\nPN_GAPS %d\nPN_EDGES %d\nPN_DESCENT %d\nPN_REFINE %d\nPN_TEXELS_MAX %d\n",
-                  (int)v->primitive, v->gaps, v->edges, descent, refine, TEXELS_MAX);
+                  (int)v->primitive, v->gaps, v->edges, descends(v), refine, TEXELS_MAX);
 }
 
 void pni_search_tell(const pni_job *job, const pni_search_values *v) {

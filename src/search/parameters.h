@@ -5,15 +5,18 @@
 #include "gather/gather.h"
 
 typedef enum { PNI_PRIMITIVE_PATCH, PNI_PRIMITIVE_QUAD, PNI_PRIMITIVE_QUAD_EXACT } pni_primitive;
-typedef enum { PNI_HIERARCHY_MSSM, PNI_HIERARCHY_HSM, PNI_HIERARCHY_NONE } pni_hierarchy;
+typedef enum { PNI_HIERARCHY_MSSM, PNI_HIERARCHY_HSM, PNI_HIERARCHY_HYBRID, PNI_HIERARCHY_NONE } pni_hierarchy;
 
 extern const char *const pni_hierarchy_names[];
 
 /* Rows of a technique's table. source: where its paper speaks of it. */
 #define PNI_PARAMETER_HIERARCHY(source) \
   { \
-    "hierarchy", "", "what narrows the search: range stack, range pyramid, nothing; with merge above 0 the pyramid", \
-        source, PN_CHOICE, 0, 2, PNI_HIERARCHY_MSSM, pni_hierarchy_names \
+    "hierarchy", "", \
+        "what narrows the search: range stack, range pyramid, a stack above a pyramid, nothing; with merge above 0 " \
+        "the " \
+        "pyramid", \
+        source, PN_CHOICE, 0, 3, PNI_HIERARCHY_MSSM, pni_hierarchy_names \
   }
 #define PNI_PARAMETER_CAP(source) \
   { \

@@ -7,7 +7,7 @@
 //   PN_EDGES      quads that lack a corner are covered by the parts that belong to the others
 //   PN_DESCENT    1: adaptive descent of the range pyramid; 0: every texel of the window, or of a coarser level past
 //                 the cap
-//   PN_REFINE     what narrows the window first: 0 nothing, 1 the range pyramid, 2 the range stack
+//   PN_REFINE     what narrows the window first: 0 nothing, 1 the range pyramid, 2 the range stack, 3 a stack above a pyramid
 //   PN_TEXELS_MAX how many texels or blocks a receiver without descent looks at
 #include "search/window.glsl"
 
@@ -101,6 +101,21 @@ vec4 pn_stack_at(int light, highp sampler2DArray stack, int map, int layer, int 
   int levels = textureSize(stack, 0).z / images;
   ivec2 at = clamp(texel, ivec2(0), pn_map_size(light, map) - 1);
   return texelFetch(stack, ivec3(at, pn_array_layer(light, map, layer) * levels + level), 0);
+}
+#endif
+
+#if PN_REFINE == 3
+// Section 5, its end: a pyramid up to blocks of 4 x 4 texels, and a stack over these, which above it has level i over 2^i
+// x 2^i texels around each block. The image has the first level, and in the next layer the others: 4 x 4 cells as large
+// as the grid of blocks (range_place of maps/range.c).
+#define PN_FINE 2 // the pyramid's last level, and the stack's first
+vec4 pn_hybrid_at(int light, highp sampler2DArray hybrid, int map, int layer, int level, ivec2 at) {
+  ivec2 grid = textureSize(hybrid, 0).xy >> 2;
+  int cell = level - PN_FINE;
+  ivec2 place = cell < 4 ? ivec2(2 + (cell & 1), cell >> 1) : ivec2(cell & 3, 1 + (cell >> 2));
+  ivec2 size = level == 0 ? grid << 2 : level == 1 ? grid << 1 : grid;
+  at = clamp(at, ivec2(0), size - 1) + (level < PN_FINE ? ivec2(0) : place * grid);
+  return texelFetch(hybrid, ivec3(at, 2 * pn_array_layer(light, map, layer) + min(level, 1)), 0);
 }
 #endif
 
@@ -239,14 +254,16 @@ void pn_window_texels(int light, pn_ShadedPoint r, int map, float w, out ivec2 l
   high = min(ivec2(floor(pn_map_texel(light, map, r.m.xy + window) - shift)), pn_map_size(light, map) - 1 - border);
 }
 
-#if PN_REFINE == 2
+#if PN_REFINE >= 2
 // Level whose neighbourhood is at least that many texels wide.
 int pn_stack_level(int extent) {
   int level = 0;
   while ((1 << level) < extent) level++;
   return level;
 }
+#endif
 
+#if PN_REFINE == 2
 vec4 pn_window_range(int light, highp sampler2DArray stack, int map, int layer, ivec2 low, ivec2 high, bool four) {
   high = min(high, pn_map_size(light, map) - 1);
   int extent = max(high.x - low.x, high.y - low.y) + 1;
@@ -262,6 +279,34 @@ vec4 pn_window_range(int light, highp sampler2DArray stack, int map, int layer, 
                               pn_stack_at(light, stack, map, layer, level, ivec2(b.x, a.y)));
   vec4 upper = pn_join_ranges(pn_stack_at(light, stack, map, layer, level, ivec2(a.x, b.y)),
                               pn_stack_at(light, stack, map, layer, level, b));
+  return pn_join_ranges(lower, upper);
+}
+#elif PN_REFINE == 3
+// Finest level of the pyramid's of which that many blocks an axis hold the window; past PN_FINE: none does.
+int pn_fine_level(ivec2 low, ivec2 high, int blocks) {
+  int level = 0;
+  while (level <= PN_FINE && any(greaterThanEqual((high >> level) - (low >> level), ivec2(blocks)))) level++;
+  return level;
+}
+
+// As with the stack, a single sample and then four of the smallest that cover the window, rounded out to blocks.
+vec4 pn_window_range(int light, highp sampler2DArray hybrid, int map, int layer, ivec2 low, ivec2 high, bool four) {
+  high = min(high, pn_map_size(light, map) - 1);
+  int level = pn_fine_level(low, high, four ? 2 : 1);
+  bool fine = level <= PN_FINE;
+  ivec2 a = low >> min(level, PN_FINE), b = high >> min(level, PN_FINE);
+  int extent = max(b.x - a.x, b.y - a.y) + 1;
+  if (!fine) level = PN_FINE + pn_stack_level(four ? (extent + 1) / 2 : extent);
+  if (!four) return pn_hybrid_at(light, hybrid, map, layer, level, fine ? a : (a + b + 1) / 2);
+  if (!fine) {
+    int size = 1 << (level - PN_FINE), before = size / 2;
+    a += before;
+    b = max(b - (size - before - 1), a);
+  }
+  vec4 lower = pn_join_ranges(pn_hybrid_at(light, hybrid, map, layer, level, a),
+                              pn_hybrid_at(light, hybrid, map, layer, level, ivec2(b.x, a.y)));
+  vec4 upper = pn_join_ranges(pn_hybrid_at(light, hybrid, map, layer, level, ivec2(a.x, b.y)),
+                              pn_hybrid_at(light, hybrid, map, layer, level, b));
   return pn_join_ranges(lower, upper);
 }
 #elif PN_REFINE == 1
@@ -318,6 +363,10 @@ ivec2 pn_block_from(pn_Sheet sheet, int level, ivec2 block) {
   // A block that the map's border cuts before its centre has a neighbourhood that lies closer, and has more in it.
   int before = (1 << level) >> 1;
   return max(min(first, sheet.size - 1 - before), ivec2(0));
+#elif PN_REFINE == 3
+  if (level <= PN_FINE) return first;
+  ivec2 last = ((sheet.size - 1) >> PN_FINE) - ((1 << (level - PN_FINE)) >> 1);
+  return max(min(first, last << PN_FINE), ivec2(0));
 #else
   return first;
 #endif
@@ -329,6 +378,9 @@ vec4 pn_block_range(int light, highp sampler2DArray range, pn_Sheet sheet, int m
     return vec4(vec2(PN_NOTHING), PN_EVERYTHING, PN_NO_GAP);
 #if PN_REFINE == 2
   return pn_stack_at(light, range, map, layer, level, first + ((1 << level) >> 1));
+#elif PN_REFINE == 3
+  int above = max(level - PN_FINE, 0);
+  return pn_hybrid_at(light, range, map, layer, level, (block << above) + ((1 << above) >> 1));
 #else
   return texelFetch(range, ivec3(block, sheet.image), level);
 #endif

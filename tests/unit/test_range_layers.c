@@ -1,4 +1,4 @@
-/* Range pyramid and range stack over every layer of every tile, as techniques have them drawn: largest and smallest w
+/* Range pyramid, range stack and the hybrid of both over every layer of every tile, as techniques have them drawn: largest and smallest w
  * of each neighbourhood, texel by texel. test_maps.c looks at sizes and levels of single maps. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,12 +41,40 @@ static void assert_range(const pni_maps *maps, int map, const float *depth, cons
 static int at_most(int a, int b) { return a < b ? a : b; }
 static int at_least(int a, int b) { return a > b ? a : b; }
 
+/* The hybrid: blocks of 1, 2 and 4 texels, and above them neighbourhoods of blocks of 4, in cells: see maps/range.c. */
+static void check_hybrid(const pni_maps *maps, int index, const float *depth) {
+  static const int cells[][2] = {{0, 0}, {2, 0}, {3, 0}, {2, 1}, {3, 1}, {0, 2}, {1, 2}, {2, 2}};
+  const pni_texture *range = &maps->range;
+  int width = range->width, height = range->height, channels = maps->want.range.quads ? 4 : 2;
+  float *first = gl_read_texture(range->id, 0, 2 * index, width, height, channels);
+  float *above = gl_read_texture(range->id, 0, 2 * index + 1, width, height, channels);
+  for (int level = 0, done = 0; !done; level++) {
+    int shrink = at_most(level, 2), w = width >> shrink, h = height >> shrink, size = 1 << (level - shrink);
+    done = level >= 2 && size >= at_least(w, h);
+    for (int i = 0; i < w * h; i++) {
+      int x = i % w, y = i / w, cell_x = level ? cells[level - 1][0] * width / 4 : 0,
+          cell_y = level ? cells[level - 1][1] * height / 4 : 0;
+      const int box[4] = {at_least(x - size / 2, 0) << shrink, at_least(y - size / 2, 0) << shrink,
+                          at_most(x + size - size / 2, w) << shrink, at_most(y + size - size / 2, h) << shrink};
+      assert_range(maps, index / pni_want_layers(&maps->want), depth, box,
+                   (level ? above : first) + channels * ((y + cell_y) * width + x + cell_x));
+    }
+  }
+  free(first);
+  free(above);
+}
+
 static void check_layer(const pni_maps *maps, int index) {
   const pni_texture *range = &maps->range;
   int width = maps->depth.width, height = maps->depth.height, map = index / pni_want_layers(&maps->want);
   bool stack = maps->want.range.structure == PNI_RANGE_STACK;
   int levels = stack ? range->layers / maps->depth.layers : range->levels;
   float *depth = gl_read_depth(maps->depth.id, index, width, height);
+  if (maps->want.range.structure == PNI_RANGE_HYBRID) {
+    check_hybrid(maps, index, depth);
+    free(depth);
+    return;
+  }
   int channels = maps->want.range.least_there ? 3 : 2;
   for (int level = 0; level < levels; level++) {
     int w = stack ? width : at_least(range->width >> level, 1),
@@ -120,7 +148,13 @@ static void test_stack(void **state) {
   check("mssm");
 }
 
+static void test_hybrid(void **state) {
+  (void)state;
+  check("hybrid");
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pyramid), cmocka_unit_test(test_stack)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pyramid), cmocka_unit_test(test_stack),
+                                     cmocka_unit_test(test_hybrid)};
   return GL_RUN("ranges of layers", tests);
 }

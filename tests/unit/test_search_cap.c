@@ -35,13 +35,13 @@ static int most_visited(over_ground *c, const pn_light_desc *light, const char *
 
 static void test_cap(void **state) {
   (void)state;
-  static const char *const hierarchies[] = {"none", "hsm", "mssm"}, *const primitives[] = {"patch", "quad"};
+  static const char *const hierarchies[] = {"none", "hsm", "mssm", "hybrid"}, *const primitives[] = {"patch", "quad"};
   static const int caps[] = {1, 2, 3, 7, 18, 19};
   over_ground c = {0};
   open_leaves(&c);
   assert_ok(pn_debug(c.s.context, PN_DEBUG_SEARCH));
   pn_light_desc light = light_over_ground(0.7, 0.5, 100);
-  for (int i = 0; i < 6; i++)
+  for (int i = 0; i < 8; i++)
     for (int k = 0; k < 6; k++) {
       /* A quad needs two blocks. */
       int cap = caps[k], allowed = i % 2 && cap == 1 ? 2 : cap;

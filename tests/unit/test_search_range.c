@@ -161,12 +161,18 @@ static void test_pyramid(void **state) {
   check("hsm");
 }
 
+static void test_hybrid(void **state) {
+  (void)state;
+  check("hybrid");
+}
+
 static void test_stack(void **state) {
   (void)state;
   check("mssm");
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pyramid), cmocka_unit_test(test_stack)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pyramid), cmocka_unit_test(test_stack),
+                                     cmocka_unit_test(test_hybrid)};
   return GL_RUN("ranges of windows", tests);
 }
