@@ -247,6 +247,8 @@ const struct option_row option_table[OPTION_COUNT] = {
                        "at most N timed frames, default 20, and at most 3 s a technique"},
     [OPTION_LIGHTS] = {"lights", 0, "N[,N...]", COMMAND_BENCH, read_lights,
                        "measure with N lights around the scene's own, default 1"},
+    [OPTION_HIERARCHIES] = {"hierarchies", 0, NULL, COMMAND_BENCH, read_flag,
+                            "measure range pyramid, stack and hybrid, too, for maps of 256 to 2048"},
     [OPTION_QUIET] = {"quiet", 0, NULL, EVERY, read_flag, "no progress bars"},
     [OPTION_VERBOSE] = {"verbose", 0, NULL, EVERY, read_flag, "say more"},
     [OPTION_HELP] = {"help", 'h', NULL, EVERY, read_flag, "show this and exit"},

@@ -2,6 +2,7 @@
  * touches no pixel. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/message.h"
 #include "commands/commands.h"
@@ -164,6 +165,60 @@ static int bench_untouched(struct bench *b) {
   return status;
 }
 
+/* ---- hierarchies: Bitmask Soft Shadows, Table 2 ---- */
+
+enum { HIERARCHIES = 3 };
+static const char *const hierarchies[HIERARCHIES] = {"hsm", "mssm", "hybrid"};
+
+static double stage_ms(const struct timing *t, const char *stage) {
+  for (int i = 0; i < t->stage_count; i++)
+    if (strcmp(t->stages[i].name, stage) == 0) return t->stages[i].milliseconds;
+  return NAN;
+}
+
+static void report_hierarchy(struct bench *b, int map, const char *hierarchy, const struct timing *t, long long bytes) {
+  double ms = stage_ms(t, "range");
+  fprintf(b->people, "%5dx%-6d %-10s %12.3f %10.2f\n", map, map, hierarchy, ms, (double)bytes / (1024 * 1024));
+  fflush(b->people);
+  if (!b->json) return;
+  cJSON *all = cJSON_GetObjectItem(b->json, "hierarchies"), *item = cJSON_CreateObject();
+  if (!all) all = cJSON_AddArrayToObject(b->json, "hierarchies");
+  cJSON_AddItemToArray(all, item);
+  cJSON_AddNumberToObject(item, "map", map);
+  cJSON_AddStringToObject(item, "hierarchy", hierarchy);
+  if (isfinite(ms)) cJSON_AddNumberToObject(item, "build_ms", ms);
+  else cJSON_AddNullToObject(item, "build_ms");
+  cJSON_AddNumberToObject(item, "bytes", (double)bytes);
+  cJSON_AddNumberToObject(item, "frames", t->frames);
+}
+
+/* One depth map of that size with each hierarchy: two channels, as in the paper. */
+static int bench_hierarchy_size(struct bench *b, int map) {
+  struct setup setup = b->host.scene->setup;
+  struct contestant c[HIERARCHIES];
+  pn_light *lights[HIERARCHIES] = {NULL};
+  int status = STATUS_OK;
+  setup.map[0] = setup.map[1] = map;
+  for (int i = 0; i < HIERARCHIES && !status; i++) {
+    char spec[80];
+    snprintf(spec, sizeof spec, "bitmask:merge=0,maps=front,primitive=patch,hierarchy=%s", hierarchies[i]);
+    c[i] = (struct contestant){.client = b->host.client, .lights = &lights[i], .light_count = 1, .maps_only = 1};
+    status = client_light(b->host.client, &setup, &setup.light, spec, &lights[i]);
+  }
+  if (!status) status = measure(c, HIERARCHIES, b->options->frames, 1);
+  for (int i = 0; i < HIERARCHIES && !status; i++)
+    report_hierarchy(b, map, hierarchies[i], &c[i].timing, client_range_bytes(b->host.client, lights[i]));
+  for (int i = 0; i < HIERARCHIES; i++) pn_light_destroy(&lights[i]);
+  return status;
+}
+
+static int bench_hierarchies(struct bench *b) {
+  int status = STATUS_OK;
+  fprintf(b->people, "\n%-12s %-10s %12s %10s\n", "map", "hierarchy", "build, ms", "MiB");
+  for (int map = 256; map <= 2048 && !status; map *= 2) status = bench_hierarchy_size(b, map);
+  return status;
+}
+
 static void print_head(const struct bench *b) {
   const struct scene *scene = b->host.scene;
   const struct setup *setup = &scene->setup;
@@ -183,6 +238,7 @@ static int run_bench(struct bench *b) {
   for (int i = 0; i < o->light_count_count && !status; i++) status = bench_techniques(b, o->light_counts[i]);
   if (!status) status = bench_state(b);
   if (!status) status = bench_untouched(b);
+  if (!status && o->given[OPTION_HIERARCHIES]) status = bench_hierarchies(b);
   if (!status && b->json) {
     status = write_result(o, b->json);
     b->json = NULL;

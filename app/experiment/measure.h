@@ -22,6 +22,7 @@ struct contestant {
   pn_light **lights;
   int light_count;
   int in_scope;         /* frames stand between pn_state_begin and pn_state_end */
+  int maps_only;        /* frames end before visibility */
   struct timing timing; /* the result */
 };
 

@@ -138,8 +138,42 @@ int client_light(struct client *client, const struct setup *setup, const struct 
   return status;
 }
 
+int client_maps(struct client *client, pn_light *light) {
+  return client_check(client, pn_maps_update(light, client->casters, PN_GROUPS_ALL, &client->receiver, 1));
+}
+
+/* All levels, as GL says they are. */
+static long long image_bytes(const pn_image *image) {
+  static const GLenum sizes[] = {GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE, GL_TEXTURE_BLUE_SIZE,
+                                 GL_TEXTURE_ALPHA_SIZE};
+  enum { LEVELS_MAX = 16 };
+  long long bytes = 0;
+  glBindTexture(image->target, image->texture);
+  for (int level = 0, width = 1; level < LEVELS_MAX && width > 0; level++) {
+    GLint height = 0, depth = 0, bits = 0;
+    glGetTexLevelParameteriv(image->target, level, GL_TEXTURE_WIDTH, &width);
+    glGetTexLevelParameteriv(image->target, level, GL_TEXTURE_HEIGHT, &height);
+    glGetTexLevelParameteriv(image->target, level, GL_TEXTURE_DEPTH, &depth);
+    for (int i = 0; i < 4; i++) {
+      GLint size = 0;
+      glGetTexLevelParameteriv(image->target, level, sizes[i], &size);
+      bits += size;
+    }
+    bytes += (long long)width * height * depth * bits / 8;
+  }
+  return bytes;
+}
+
+long long client_range_bytes(struct client *client, pn_light *light) {
+  const char *name;
+  pn_image image;
+  for (int i = 0; pn_debug_image(light, client->receiver, i, &name, &image); i++)
+    if (strcmp(name, "range") == 0) return image_bytes(&image);
+  return 0;
+}
+
 int client_frame(struct client *client, pn_light *light) {
-  int status = client_check(client, pn_maps_update(light, client->casters, PN_GROUPS_ALL, &client->receiver, 1));
+  int status = client_maps(client, light);
   return status ? status : client_check(client, pn_visibility(light, client->receiver));
 }
 

@@ -25,6 +25,9 @@ void client_free(struct client **client); /* and its lights */
 int client_light(struct client *client, const struct setup *setup, const struct light *light, const char *spec,
                  pn_light **out);
 
+/* The maps of one frame, without visibility; and the bytes of what summarises them, 0 where nothing does. */
+int client_maps(struct client *client, pn_light *light);
+long long client_range_bytes(struct client *client, pn_light *light);
 /* Maps and visibility of one frame. */
 int client_frame(struct client *client, pn_light *light);
 

@@ -128,4 +128,21 @@ grep -q 'state saving' out && grep -q 'touches no pixel' out || fail "bench cost
 for key in '"ratio":' '"lights":' '"stages":' '"state_saving":' '"untouched_light":' '"scene":'; do
   grep -q "$key" bench.json || fail "bench.json has no $key"
 done
+
+# bench --hierarchies: Table 2 of the bitmask paper, for people and for machines. The stack has a full image for each of
+# 9 to 12 levels, the pyramid a third more than one, the hybrid two.
+run 0 bench builtin:square --size 32x24 -t hard --frames 1 --hierarchies --json hierarchies.json
+grep -qE '^ +2048x2048 +hybrid +[0-9.]+ +64\.00$' out || fail "hierarchies: $(cat out)"
+python3 - hierarchies.json <<'END' || fail "hierarchies.json: $(cat hierarchies.json)"
+import json, sys
+rows = {(r["map"], r["hierarchy"]): r for r in json.load(open(sys.argv[1]))["hierarchies"]}
+assert len(rows) == 12, rows
+for level, size in enumerate((256, 512, 1024, 2048), 8):
+    full = 8 * size * size
+    assert rows[size, "hsm"]["bytes"] == sum(8 * (size >> i) ** 2 for i in range(level + 1))
+    assert rows[size, "mssm"]["bytes"] == (level + 1) * full
+    assert rows[size, "hybrid"]["bytes"] == 2 * full
+    assert all(rows[size, h]["build_ms"] > 0 for h in ("hsm", "mssm", "hybrid"))
+END
+! grep -q '"hierarchies"' bench.json || fail "hierarchies without being asked for"
 finish
