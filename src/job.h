@@ -35,7 +35,8 @@ typedef struct {
   /* in pn_visibility only */
   pn_receiver *receiver; /* NULL in pn_maps_update */
   void *pair_state;
-  pni_texture *low, *search; /* for what gathers: visibility at reduced resolution; what a search did */
+  /* for what gathers: visibility at reduced resolution; what a search did, and at which levels */
+  pni_texture *low, *search, *levels;
   pni_target target;
 } pni_job;
 

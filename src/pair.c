@@ -7,6 +7,7 @@ static void release_pair(pni_object *object, bool abandon) {
   pni_texture_free(gpu, &pair->image, abandon);
   pni_texture_free(gpu, &pair->low, abandon);
   pni_texture_free(gpu, &pair->search, abandon);
+  pni_texture_free(gpu, &pair->levels, abandon);
   pni_clock_free(gpu, &pair->clock, abandon);
 }
 

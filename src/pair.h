@@ -10,10 +10,10 @@ typedef struct {
   pni_object object; /* needs the light and the receiver */
   pni_texture image; /* the result */
   bool drawn;
-  bool asked;         /* the last draw was the technique's: something cast */
-  pni_texture low;    /* at reduced resolution, before it is brought up */
-  pni_texture search; /* what a search did, when debugging */
-  pni_kept kept;      /* by the technique of the last draw */
+  bool asked;                 /* the last draw was the technique's: something cast */
+  pni_texture low;            /* at reduced resolution, before it is brought up */
+  pni_texture search, levels; /* what a search did, when debugging */
+  pni_kept kept;              /* by the technique of the last draw */
   pni_clock clock;
 } pni_pair;
 

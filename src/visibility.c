@@ -20,6 +20,7 @@ static pn_result draw_visibility(pn_light *light, pn_receiver *receiver, pni_pai
   job.receiver = receiver;
   job.low = &pair->low;
   job.search = &pair->search;
+  job.levels = &pair->levels;
   job.target = target;
   if (!job.gpu->plan.on) pair->asked = !empty;
   if (empty) {
@@ -226,7 +227,8 @@ int pn_debug_image(pn_light *light, pn_receiver *receiver, int index, const char
   if (take_image(&s, &light->maps.depth, "depth") || take_image(&s, &light->maps.range, "range")) return 1;
   if (take_kept(&s, &light->kept)) return 1;
   if (!pair) return 0;
-  return take_image(&s, &pair->low, "low") || take_image(&s, &pair->search, "search") || take_kept(&s, &pair->kept) ||
+  return take_image(&s, &pair->low, "low") || take_image(&s, &pair->search, "search") ||
+         take_image(&s, &pair->levels, "levels") || take_kept(&s, &pair->kept) ||
          take_image(&s, &pair->image, "visibility");
 }
 

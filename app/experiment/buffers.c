@@ -25,16 +25,15 @@ int save_view(const struct save *save, const struct view *view) {
 static int save_inside(const struct save *save, const char *name, enum inside kind, const struct insides *in) {
   if (kind == INSIDE_SOFT) return save_layers(save, name, in->soft_width, in->soft_height, in->soft_layers, in->soft);
   if (kind == INSIDE_BOUND) return save_scalars(save, name, in->bound);
-  const struct exr_plane planes[4] = {{"class", in->search, 4},
-                                      {"primitives", in->search + 2, 4},
-                                      {"visited", in->search + 1, 4},
-                                      {"window", in->search + 3, 4}};
-  return save_planes(save, name, planes, 4);
+  const struct exr_plane planes[6] = {{"class", in->search, 4},          {"level", in->levels, 2},
+                                      {"primitives", in->search + 2, 4}, {"range_level", in->levels + 1, 2},
+                                      {"visited", in->search + 1, 4},    {"window", in->search + 3, 4}};
+  return save_planes(save, name, planes, 6);
 }
 
 static int save_insides(const struct save *save, const char *file, const struct insides *in) {
   const float *const there[INSIDE_COUNT] = {
-      [INSIDE_SEARCH] = in->search, [INSIDE_SOFT] = in->soft, [INSIDE_BOUND] = in->bound};
+      [INSIDE_SEARCH] = in->levels ? in->search : NULL, [INSIDE_SOFT] = in->soft, [INSIDE_BOUND] = in->bound};
   int status = STATUS_OK;
   for (int i = 0; i < INSIDE_COUNT && !status; i++) {
     if (!there[i]) continue;

@@ -279,6 +279,7 @@ int client_insides(struct client *client, pn_light *light, int debug_flags, stru
   if (!status) status = client_frame(client, light);
   if (!status) status = client_check(client, pn_debug(client->context, 0));
   if (!status && debug_flags & PN_DEBUG_SEARCH) status = read_debug(client, light, "search", GL_RGBA, 4, &out->search);
+  if (!status && out->search) status = read_debug(client, light, "levels", GL_RG, 2, &out->levels);
   if (!status && debug_flags & PN_DEBUG_SEARCH) status = read_covered(client, light, &out->covered);
   if (!status && debug_flags & PN_DEBUG_BOUND) status = read_debug(client, light, "bound", GL_RED, 1, &out->bound);
   return status ? status : read_soft(client, light, out);
@@ -286,6 +287,7 @@ int client_insides(struct client *client, pn_light *light, int debug_flags, stru
 
 void insides_free(struct insides *insides) {
   free(insides->search);
+  free(insides->levels);
   free(insides->bound);
   free(insides->soft);
   memset(insides, 0, sizeof *insides);

@@ -36,6 +36,7 @@ int client_visibility(struct client *client, pn_light *light, float *out);
 
 /* What the light's technique did on the way, for the view of its last frame: one more frame is drawn for it. */
 struct insides {
+  float *levels; /* two floats a pixel, where there is search: coarsest level of primitives, of ranges */
   float *search; /* four floats a pixel (see pn_debug), top row first; NULL: the technique does not search */
   float *bound;  /* of the error, one float a pixel, top row first; NULL: the technique has none */
   float *soft;   /* the soft shadow map: for each layer of receivers what is hidden, top row first; NULL: none */

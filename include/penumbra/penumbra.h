@@ -569,9 +569,11 @@ PN_API pn_result pn_soft_shadow_map_image(pn_light *light, pn_receiver *receiver
 /* Makes techniques tell what they did, as debug images. flags: the sum of what is wanted, 0 at first.
  * Errors: ARGUMENT (DEBUG_FLAGS).
  * PN_DEBUG_SEARCH  "search", of techniques that search: red = class (0 no map was asked, 1 lit, 2 umbra, 3 penumbra),
- *                  green = blocks visited, blue = primitives covered, alpha = texels in the search windows; costs a
- *                  second colour target. Of technique `ssm`: "covered", in the layers of the soft shadow map, how many
- *                  micropatches came by each texel; costs another drawing
+ *                  green = blocks visited, blue = primitives covered, alpha = texels in the search windows; and
+ *                  "levels": red = the coarsest level that its primitives came from (0 texels, 1 blocks of 2 x 2 and
+ *                  so on; with descent where it began), green = that of the ranges that narrowed the windows last;
+ *                  costs two more colour targets. Of technique `ssm`: "covered", in the layers of the soft shadow
+ *                  map, how many micropatches came by each texel; costs another drawing
  * PN_DEBUG_BOUND   "bound", of technique `ssm` with merge=0: how far visibility may be off because neighbouring
  *                  micropatches overlap or part (Soft Shadow Maps, Eq. 3); costs another drawing of them all */
 enum { PN_DEBUG_SEARCH = 1, PN_DEBUG_BOUND = 2 };

@@ -53,7 +53,10 @@ static pn_result draw(const pni_job *job, const gather_pass *p) {
                    .channels = p->target.channels,
                    .width = p->width,
                    .height = p->height};
-  if (p->debug) pass.color[1] = pni_image_of(job->search, 0, 0);
+  if (p->debug) {
+    pass.color[1] = pni_image_of(job->search, 0, 0);
+    pass.color[2] = pni_image_of(job->levels, 0, 0);
+  }
   pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
   pni_receiver_uniforms(job->receiver, job->frame, job->emission, &job->maps->rounding, p->scale);
@@ -69,6 +72,8 @@ static pn_result draw_visibility(const pni_job *job, pni_target target, int widt
   pn_result result = PN_OK;
   p.debug = (job->gpu->debug & PN_DEBUG_SEARCH) && job->gathering->searches;
   if (p.debug) result = pni_texture_shape(job->gpu, job->search, "search", PNI_RGBA32F, width, height, 0, 1);
+  if (p.debug && result == PN_OK)
+    result = pni_texture_shape(job->gpu, job->levels, "levels", PNI_RG32F, width, height, 0, 1);
   if (result == PN_OK) result = draw(job, &p);
   pni_job_mark(job, "visibility");
   return result;

@@ -10,7 +10,8 @@ uniform highp sampler2DArray pn_range; // the range pyramid, or what the techniq
 layout(location = 0) out vec4 pn_out;
 #if PN_DEBUG
 layout(location = 1) out vec4 pn_search_out;
-vec4 pn_search_report();
+layout(location = 2) out vec4 pn_levels_out;
+vec4 pn_search_report(out vec2 levels);
 #endif
 
 pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r);
@@ -36,6 +37,8 @@ void main() {
 #endif
   pn_out = pn_visibility_texel(v);
 #if PN_DEBUG
-  pn_search_out = pn_search_report();
+  vec2 levels;
+  pn_search_out = pn_search_report(levels);
+  pn_levels_out = vec4(levels, 0.0, 1.0);
 #endif
 }

@@ -46,7 +46,7 @@ typedef struct {
   int active_unit;
   pn_gl texture[PNI_UNITS], sampler[PNI_UNITS];
   GLenum target[PNI_UNITS];
-  pni_image color[2], depth;
+  pni_image color[PNI_COLORS], depth;
   bool attached;                            /* color and depth are what the framebuffer has */
   int viewport[4], scissor[4], channels[2]; /* channels: bits of the colour mask, for each image */
   bool depth_test, depth_write, depth_clamp, scissor_test, cull, clockwise, point_size;

@@ -13,4 +13,6 @@ enum {
   PNI_TRANSFER_NAMES = 12 /* of pixel transfer in compatibility contexts */
 };
 
+enum { PNI_COLORS = 3 }; /* colour targets of a pass */
+
 #endif

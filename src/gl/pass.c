@@ -31,19 +31,19 @@ static pn_result fail_attached(pni_gpu *gpu, const pni_pass *pass, GLenum status
 }
 
 static pn_result attach_all(pni_gpu *gpu, const pni_pass *pass) {
-  static const GLenum points[2] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+  static const GLenum points[PNI_COLORS] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT0 + 1, GL_COLOR_ATTACHMENT0 + 2};
   pni_bound *b = &gpu->bound;
-  GLenum draw[2];
+  GLenum draw[PNI_COLORS];
   bool changed = false;
   pni_bind_framebuffer(gpu);
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < PNI_COLORS; i++) {
     changed = attach(gpu, points[i], &pass->color[i], &b->color[i]) || changed;
     draw[i] = pass->color[i].texture ? points[i] : GL_NONE;
   }
   changed = attach(gpu, GL_DEPTH_ATTACHMENT, &pass->depth, &b->depth) || changed;
   if (!changed) return PN_OK;
   b->attached = true;
-  GL(gpu, DrawBuffers)(2, draw);
+  GL(gpu, DrawBuffers)(PNI_COLORS, draw);
   GLenum status = GL(gpu, CheckFramebufferStatus)(GL_DRAW_FRAMEBUFFER);
   return status == GL_FRAMEBUFFER_COMPLETE ? PN_OK : fail_attached(gpu, pass, status);
 }

@@ -23,7 +23,7 @@ typedef struct {
 typedef struct {
   const char *name;        /* for debuggers */
   pni_program_key program; /* no fragment: none yet (pni_pass_program), or the pass only clears */
-  pni_image color[2], depth;
+  pni_image color[PNI_COLORS], depth;
   int width, height;
   int channels;         /* of color[0], that are written: bit 0 red .. bit 3 alpha; 0: all */
   const float *clear;   /* four numbers that color[0] has at first; NULL: what it holds stays */

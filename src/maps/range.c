@@ -26,8 +26,8 @@ static pni_format range_format(const pni_range_kind *kind) {
 static int whole_blocks(int size) { return (size + PNI_HYBRID_BLOCK - 1) / PNI_HYBRID_BLOCK * PNI_HYBRID_BLOCK; }
 
 /* The hybrid's first level has a texel for each of the map's, padded to whole blocks, in a layer of its own; the next
- * layer has all levels above it, as range_place says. The pyramid's first level has a texel for each of the map's, padded to powers of two; the stack has every level at
- * full size, as array layers. */
+ * layer has all levels above it, as range_place says. The pyramid's first level has a texel for each of the map's,
+ * padded to powers of two; the stack has every level at full size, as array layers. */
 pn_result pni_range_shape(pni_gpu *gpu, pni_texture *texture, const pni_range_kind *kind, int layers, int width,
                           int height) {
   if (kind->structure == PNI_RANGE_PYRAMID) {

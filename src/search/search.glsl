@@ -7,13 +7,18 @@
 //   PN_EDGES      quads that lack a corner are covered by the parts that belong to the others
 //   PN_DESCENT    1: adaptive descent of the range pyramid; 0: every texel of the window, or of a coarser level past
 //                 the cap
-//   PN_REFINE     what narrows the window first: 0 nothing, 1 the range pyramid, 2 the range stack, 3 a stack above a pyramid
+//   PN_REFINE     what narrows the window first: 0 nothing, 1 the range pyramid, 2 the range stack, 3 a stack
+//                 above a pyramid
 //   PN_TEXELS_MAX how many texels or blocks a receiver without descent looks at
 #include "search/window.glsl"
 
 // What the search did, for looking at (docs/techniques/bitmask.md): class (0 not searched, 1 lit, 2 umbra, 3
 // penumbra), blocks visited, primitives covered, texels in the window.
 vec4 pn_search_done = vec4(0.0);
+// The coarsest levels over all layers and maps: of its primitives (0: texels; with descent where it begins), and of
+// what narrowed the window last.
+vec2 pn_search_levels = vec2(0.0);
+void pn_used_range_level(int level) { pn_search_levels.y = max(pn_search_levels.y, float(level)); }
 
 // Turns of the descent, over all layers and maps of this receiver. Software GL ends a shader's loops after 65535
 // turns in all, so past PN_TURNS blocks are looked at no closer: what is left costs a few turns for each level.
@@ -105,8 +110,8 @@ vec4 pn_stack_at(int light, highp sampler2DArray stack, int map, int layer, int 
 #endif
 
 #if PN_REFINE == 3
-// Section 5, its end: a pyramid up to blocks of 4 x 4 texels, and a stack over these, which above it has level i over 2^i
-// x 2^i texels around each block. The image has the first level, and in the next layer the others: 4 x 4 cells as large
+// Section 5, its end: a pyramid up to blocks of 4 x 4 texels, and a stack over these, which above it has level i over
+// 2^i x 2^i texels around each block. The image has the first level, and in the next layer the others: 4 x 4 cells as large
 // as the grid of blocks (range_place of maps/range.c).
 #define PN_FINE 2 // the pyramid's last level, and the stack's first
 vec4 pn_hybrid_at(int light, highp sampler2DArray hybrid, int map, int layer, int level, ivec2 at) {
@@ -272,6 +277,7 @@ vec4 pn_window_range(int light, highp sampler2DArray stack, int map, int layer, 
   if (!four) return pn_stack_at(light, stack, map, layer, pn_stack_level(extent), (low + high + 1) / 2);
   // Section 5: four neighbourhoods of half the size, pushed into the window's corners.
   int level = pn_stack_level((extent + 1) / 2);
+  pn_used_range_level(level);
   // texels of a neighbourhood before and after its centre
   int before = (1 << level) / 2, after = (1 << level) - before - 1;
   ivec2 a = low + before, b = max(high - after, low + before);
@@ -298,6 +304,7 @@ vec4 pn_window_range(int light, highp sampler2DArray hybrid, int map, int layer,
   int extent = max(b.x - a.x, b.y - a.y) + 1;
   if (!fine) level = PN_FINE + pn_stack_level(four ? (extent + 1) / 2 : extent);
   if (!four) return pn_hybrid_at(light, hybrid, map, layer, level, fine ? a : (a + b + 1) / 2);
+  pn_used_range_level(level);
   if (!fine) {
     int size = 1 << (level - PN_FINE), before = size / 2;
     a += before;
@@ -311,6 +318,8 @@ vec4 pn_window_range(int light, highp sampler2DArray hybrid, int map, int layer,
 }
 #elif PN_REFINE == 1
 vec4 pn_window_range(int light, highp sampler2DArray range, int map, int layer, ivec2 low, ivec2 high, bool four) {
+  int extent = max(max(high.x - low.x, high.y - low.y), 1);
+  if (four) pn_used_range_level((floatBitsToInt(float(extent)) >> 23) - 127); // as in pn_range_over
   return pn_range_over(light, range, map, layer, low, high);
 }
 #endif
@@ -510,6 +519,7 @@ void pn_scan(int light, highp sampler2DArray maps, highp sampler2DArray range, p
   pn_Sheet sheet = pn_sheet(light, r, map, layer);
   ivec2 first, last;
   int level = pn_level_for(light, window, cap, first, last);
+  pn_search_levels.x = max(pn_search_levels.x, float(level));
   for (ivec2 at = first; at.y <= last.y; at = ivec2(first.x, at.y + 1))
     while (at.x <= last.x) {
       PN_STEP PN_STEP PN_STEP PN_STEP PN_STEP PN_STEP PN_STEP PN_STEP
@@ -664,6 +674,7 @@ void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range
   pn_Walk walk;
   walk.top = 0;
   while ((extent >> walk.top) > 2) walk.top++;
+  pn_search_levels.x = max(pn_search_levels.x, float(walk.top));
   walk.first = walk.node = window.low >> walk.top;
   walk.last = window.high >> walk.top;
   walk.level = walk.top;
@@ -715,4 +726,7 @@ void pn_search(int light, highp sampler2DArray maps, highp sampler2DArray range,
 #endif
 }
 
-vec4 pn_search_report() { return pn_search_done; }
+vec4 pn_search_report(out vec2 levels) {
+  levels = pn_search_levels;
+  return pn_search_done;
+}

@@ -1,6 +1,6 @@
 /* What narrows a search changes what it costs, not what it finds: the same visibility with a range stack, a range
- * pyramid, a hybrid of both, and none. But for one thing: with ranges, pixels whose whole window hides are known to be dark, also where
- * primitives at different depths leave gaps. */
+ * pyramid, a hybrid of both, and none. But for one thing: with ranges, pixels whose whole window hides are known to be
+ * dark, also where primitives at different depths leave gaps. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

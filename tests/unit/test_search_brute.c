@@ -517,7 +517,7 @@ static void cover_all(const atlas *a, const receiver *r, const shape *how, field
 /* ---- comparing ---- */
 
 typedef struct {
-  int compared, hidden, open, outside, coarse;
+  int compared, hidden, open, outside, coarse, searched;
   double worst;
 } tally;
 
@@ -577,6 +577,23 @@ static pn_light_desc pick_light(uint64_t *seed, int round) {
   return light;
 }
 
+/* A debug image's floats, channels of them a pixel. */
+static float *debug_image(const stage *s, const char *wanted, int channels) {
+  pn_image image;
+  const char *name;
+  for (int i = 0; pn_debug_image(s->light, s->receiver, i, &name, &image); i++)
+    if (strcmp(name, wanted) == 0) return gl_read_texture(image.texture, 0, -1, PIXELS, PIXELS, channels);
+  return NULL;
+}
+
+/* What a pixel that looked at primitives says of their level. */
+static void compare_level(const float *search, const float *levels, int size, tally *t) {
+  enum { PENUMBRA = 3 };
+  if (!search || search[0] != PENUMBRA) return;
+  t->searched++;
+  assert_int_equal(1 << (int)levels[0], size);
+}
+
 /* s: kept from round to round, since compiling takes longer than looking. */
 static void look(stage *s, const char *spec, const shape *how, int code, int round, tally *t) {
   uint64_t seed = 500 + (uint64_t)round;
@@ -606,6 +623,7 @@ static void look(stage *s, const char *spec, const shape *how, int code, int rou
   assert_ok(pn_light_maps(s->light, &info));
   atlas a = read_maps(s);
   int outside = t->outside;
+  float *search = debug_image(s, "search", 4), *levels = debug_image(s, "levels", 2);
   for (int i = 0; i < PIXELS * PIXELS && !info.empty && a.maps == 1; i++) {
     if (v.shown[i] < 0) continue;
     vec p = stored_point(&v, i);
@@ -615,6 +633,7 @@ static void look(stage *s, const char *spec, const shape *how, int code, int rou
     int size = how->cap ? block_size(&a, &r, how) : 1;
     if (size == 0) continue;
     t->coarse += size > 1;
+    compare_level(search ? search + 4 * i : NULL, levels + 2 * i, size, t);
     if (size > 1) cover_blocks(&a, &r, size, how, &f);
     else cover_all(&a, &r, how, &f);
     compare_pixel(&r, &f, visibility[i], t);
@@ -623,6 +642,8 @@ static void look(stage *s, const char *spec, const shape *how, int code, int rou
     print_message("%s, round %d: %d of %d pixels outside, by up to %g\n", spec, round, t->outside - outside,
                   PIXELS * PIXELS, t->worst);
   free_maps(&a);
+  free(search);
+  free(levels);
   free(visibility);
   view_free(&v);
   soup_free(&casters);
@@ -638,13 +659,14 @@ static void check_cap(const char *primitive_name, primitive p, bool edges, const
            primitive_name, edges ? "on" : "off", samples, maps, cap);
   stage s;
   stage_open(&s);
+  if (cap) assert_ok(pn_debug(s.context, PN_DEBUG_SEARCH));
   for (int round = 0; round < rounds; round++) look(&s, spec, &how, code, round, &t);
   stage_close(&s);
   print_message("%s: %d pixels, %d in shadow, %d by blocks, %.3f samples open a pixel, %d outside\n", spec, t.compared,
                 t.hidden, t.coarse, (double)t.open / t.compared, t.outside);
   assert_true(t.compared > 64 * rounds && t.hidden > t.compared / 20);
   assert_true(t.open < 0.02 * code * code * t.compared); /* else the comparison says little */
-  assert_true(cap == 0 || t.coarse > t.compared / 4);
+  assert_true(cap == 0 || (t.coarse > t.compared / 4 && t.searched > t.compared / 4));
   assert_int_equal(t.outside, 0);
 }
 
