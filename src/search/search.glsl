@@ -111,8 +111,8 @@ vec4 pn_stack_at(int light, highp sampler2DArray stack, int map, int layer, int 
 
 #if PN_REFINE == 3
 // Section 5, its end: a pyramid up to blocks of 4 x 4 texels, and a stack over these, which above it has level i over
-// 2^i x 2^i texels around each block. The image has the first level, and in the next layer the others: 4 x 4 cells as large
-// as the grid of blocks (range_place of maps/range.c).
+// 2^i x 2^i texels around each block. The image has the first level, and in the next layer the others: 4 x 4 cells as
+// large as the grid of blocks (range_place of maps/range.c).
 #define PN_FINE 2 // the pyramid's last level, and the stack's first
 vec4 pn_hybrid_at(int light, highp sampler2DArray hybrid, int map, int layer, int level, ivec2 at) {
   ivec2 grid = textureSize(hybrid, 0).xy >> 2;

@@ -1,5 +1,6 @@
 /* Range pyramid, range stack and the hybrid of both over every layer of every tile, as techniques have them drawn:
- * largest and smallest w of each neighbourhood, texel by texel. test_maps.c looks at sizes and levels of single maps. */
+ * largest and smallest w of each neighbourhood, texel by texel. test_maps.c looks at sizes and levels of single maps.
+ * */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* cap: no more primitives along an axis of a pixel's window than it says, in each layer, whatever narrows the window
- * and wherever it begins on the grid; and where there is no cap, the host is told that large windows are searched in blocks
- * all the same. */
+ * and wherever it begins on the grid; and where there is no cap, the host is told that large windows are searched in
+ * blocks all the same. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

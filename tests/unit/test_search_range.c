@@ -1,6 +1,6 @@
 /* What narrows a search's window: whatever keeps the ranges, that of a window holds every texel of it; the range
- * stack's single sample is one of the smallest neighbourhoods that cover the window, and its four samples see no more than the
- * window (Bitmask Soft Shadows, section 5). All windows of some maps, against the texels. */
+ * stack's single sample is one of the smallest neighbourhoods that cover the window, and its four samples see no more
+ * than the window (Bitmask Soft Shadows, section 5). All windows of some maps, against the texels. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
