@@ -93,8 +93,9 @@ static void add_others(void) {
     snprintf(defines, sizeof defines, "PN_ALPHA %d\nPN_PEEL %d\nPN_FLOOR %d\n", i & 1, i >> 1 & 1, i >> 2);
     add_key("casters/caster.vert.glsl", "casters/caster.frag.glsl", "", defines);
   }
-  for (int i = 0; i < 8; i++) {
-    snprintf(defines, sizeof defines, "PN_FIRST %d\nPN_STACK %d\nPN_QUADS %d\n", i & 1, i >> 1 & 1, i >> 2);
+  for (int i = 0; i < 16; i++) {
+    snprintf(defines, sizeof defines, "PN_FIRST %d\nPN_STACK %d\nPN_QUADS %d\nPN_CORNERS %d\n", i & 1, i >> 1 & 1,
+             i >> 2 & 1, i >> 3);
     add_key(screen, "maps/range.frag.glsl", "", defines);
   }
   add_key(screen, "receiver/bounds.frag.glsl", "", "PN_FIRST 0\nPN_MASK 0\n");
