@@ -12,10 +12,10 @@ enum { PNI_LAYERS_MAX = 16 };
 
 /* Largest and smallest w of neighbourhoods: a pyramid (the papers' HSM: level i over blocks of 2^i texels a side) or
  * a stack (their MSSM: level i over the 2^i x 2^i texels centred on each texel, at full resolution), or a pyramid up to
- * blocks of PNI_HYBRID_BLOCK texels and a stack over these. Over quads, or
- * where least_there asks for it in a pyramid: a third channel has the smallest w beside empty texels, PN_EVERYTHING
- * where all are. Over quads: a fourth has gaps in depth (gaps.glsl). Both: each texel brings its right and upper
- * neighbours, so that a block has all corners of its quads; without least_there ranges are those of texels. */
+ * blocks of PNI_HYBRID_BLOCK texels and a stack over these. Over quads, or where least_there asks for it in a pyramid:
+ * a third channel has the smallest w beside empty texels, PN_EVERYTHING where all are. Over quads: a fourth has gaps in
+ * depth (gaps.glsl). Both: each texel brings its right and upper neighbours, so that a block has all corners of its
+ * quads; without least_there ranges are those of texels. */
 typedef enum { PNI_RANGE_NONE = 0, PNI_RANGE_PYRAMID, PNI_RANGE_STACK, PNI_RANGE_HYBRID } pni_range_structure;
 enum { PNI_HYBRID_BLOCK = 4 };
 typedef struct {

@@ -13,16 +13,15 @@ extern const char *const pni_hierarchy_names[];
 #define PNI_PARAMETER_HIERARCHY(source) \
   { \
     "hierarchy", "", \
-        "what narrows the search: range stack, range pyramid, a stack above a pyramid, nothing; with merge above 0 " \
-        "the " \
-        "pyramid", \
+        "what narrows the search: range stack, range pyramid, a stack above a pyramid, nothing; " \
+        "with merge above 0 the pyramid", \
         source, PN_CHOICE, 0, 3, PNI_HIERARCHY_MSSM, pni_hierarchy_names \
   }
 #define PNI_PARAMETER_CAP(source) \
   { \
     "cap", "texels", \
-        "at most N x N primitives in a pixel's window of each map, coarser ones past it; 0 = no cap; with merge=0 " \
-        "only", \
+        "at most N x N primitives in a pixel's window of each map, coarser ones past it; 0 = no cap; " \
+        "with merge=0 only", \
         source, PN_INT, 0, 4096, 0, NULL \
   }
 #define PNI_PARAMETER_MERGE \

@@ -299,10 +299,11 @@ typedef struct {
 
 static range2 join(range2 a, range2 b) { return (range2){fmax(a.most, b.most), fmin(a.least, b.least)}; }
 
-/* What the first level holds at a texel: its own w, or that of the quad it is the lower left corner of. Nothing is
- * beyond the map. */
+/* What the first level holds at a texel: its own w, or where blocks of quads are to have all their corners, that of the
+ * quad it is the lower left corner of. Nothing is beyond the map. */
 static range2 first_level(const bench *b, const float *depth, int x, int y) {
-  int width = b->maps.depth.width, height = b->maps.depth.height, size = b->maps.want.range.quads ? 2 : 1;
+  const pni_range_kind *kind = &b->maps.want.range;
+  int width = b->maps.depth.width, height = b->maps.depth.height, size = kind->quads && kind->least_there ? 2 : 1;
   range2 range = {-1e30, 1e30};
   for (int k = 0; k < size * size; k++) {
     int i = x + k % size, j = y + k / size;
@@ -396,8 +397,8 @@ static void test_small_layered(void **state) {
 
 static void check_ranges(pni_range_structure structure, void (*check)(const bench *)) {
   static const int more[][2] = {{64, 64}, {100, 37}, {1, 64}, {65, 2}};
-  for (int quads = 0; quads < 2; quads++) {
-    const pni_maps_want want = {.near_layers = 1, .range = {structure, quads, false}};
+  for (int kind = 0; kind < 3; kind++) {
+    const pni_maps_want want = {.near_layers = 1, .range = {structure, kind > 0, kind > 1}};
     bench b;
     bench_open(&b, false);
     cast_leaves(&b, 3);
