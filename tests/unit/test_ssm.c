@@ -176,12 +176,10 @@ static double beside_wall(double hidden, vec p, double texel, double dy, double 
 static void wall_open(scene *c) {
   soup_quad(&c->ground, v3(wall_x, 0, 1), v3(0, 0, -2), v3(0, wall_top, 0));
   soup_quad(&c->casters, v3(reaches[0], plate_h, -aside), v3(reaches[1] - reaches[0], 0, 0), v3(0, 0, 2 * aside));
-  scene_open(c, 2.2);
-  camera k = c->v.camera;
+  camera k = camera_over_ground(SIZE, 0.6);
   k.eye = v3(4, 0.7, 0);
   k.target = v3(wall_x, 0.7, 0);
   k.up = v3(0, 1, 0);
-  k.half_height = 0.6;
   over_ground_see(c, &k);
 }
 
