@@ -254,7 +254,7 @@ typedef struct {
   float alpha_cutoff;   /* [0, 1]; a texel with alpha >= cutoff blocks. 0 = 0.5 */
   /* object space; equal: computed from data. Required when positions are in a GL buffer */
   float bounds_min[3], bounds_max[3];
-  /* nonzero: front faces wind clockwise seen from outside. Matters only to techniques that look at faces */
+  /* nonzero: front faces wind clockwise seen from outside. Matters only to ssm:faces=culled */
   int clockwise;
 } pn_mesh_desc;
 
@@ -302,7 +302,8 @@ typedef enum { PN_FACES_ANY = 3, PN_FACES_FRONT = 1, PN_FACES_BACK = 2 } pn_face
 
 /* What a pass asks of the host's draw callback; valid during it. Framebuffer, viewport, scissor, depth function, depth
  * range, depth clamp, culling and colour mask are set: do not change them. Program, vertex array, textures and buffers
- * are the callback's to bind. */
+ * are the callback's to bind; the front face is GL_CCW, and the callback's to set where its triangles wind clockwise or
+ * are mirrored. */
 typedef struct {
   const float *clip_from_scene; /* 16 floats; GL's own depth convention (-1 to 1), never a reversed one */
   /* plane_count times 4: n.p + d >= 0 inside, scene space, for the host's culling; around less than the matrix shows

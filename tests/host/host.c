@@ -251,7 +251,7 @@ const char *host_spec(int index) {
                                          "bitmask:maps=layers,layers=4,focus=40",
                                          "bitmask:merge=0",
                                          "bitmask:merge=0,hierarchy=none",
-                                         "ssm:accumulate=fp16-batched",
+                                         "ssm:accumulate=fp16-batched,faces=culled",
                                          "ssm:sides=front,extents=cpu",
                                          "smoothies:geometry=edges,width=0.1"};
   enum { VARIANTS = sizeof variants / sizeof *variants };

@@ -53,6 +53,7 @@ static const change changes[] = {
     {"pcf", "filter", 1, 0, "pcf:filter=bicubic"},
     {"pcss", "samples", 5, 0, "pcss:samples=5"},
     {"ssm", "sides", 1, 1, "ssm:sides=front"},
+    {"ssm", "faces", 1, 1, "ssm:faces=culled"},
     {"ssm", "layers", 2, 0, "ssm:layers=2"},
     {"ssm", "merge", 1, 0, "ssm:merge=1"},
     {"ssm", "accumulate", 1, 0, "ssm:accumulate=fp16-batched"},

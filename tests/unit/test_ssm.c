@@ -1,5 +1,5 @@
 /* Soft shadow maps: lists of micropatches from GPU and CPU, a plate's closed form, sums in 16 bits, the error's bound,
- * and scenes that ask for trouble. */
+ * which faces cast, and scenes that ask for trouble. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,7 +64,7 @@ static void check_lists(const char *spec, int map) {
   float *gpu = read_list(kept, count);
   pni_job job = {.gpu = &c.s.context->gpu, .maps = &c.s.light->maps, .pair_state = kept};
   pni_ssm_list list = {
-      .job = &job, .state = kept, .layer = pni_want_layers(&job.maps->want) - 1, .share = c.s.light->values[4] / 100};
+      .job = &job, .state = kept, .layer = pni_want_layers(&job.maps->want) - 1, .share = c.s.light->values[5] / 100};
   pni_enter(c.s.context);
   assert_ok(pni_leave(c.s.context, pni_ssm_cpu_list(&list, &cpu_count)));
   float *cpu = read_list(kept, cpu_count);
@@ -90,33 +90,39 @@ static void gpu_and_cpu_lists_agree(void **state) {
 
 /* ---- a plate parallel to the light ------------------------------------------------------------------------------- */
 
-static double texel_on_light(const pn_maps_info *info) {
-  return fmax(info->s1 - info->s0, info->t1 - info->t0) / info->width * (LIGHT_HEIGHT - plate_h) * LIGHT_HEIGHT /
-         plate_h;
+/* A texel of a map of something at that height, on the light, as the ground sees it. */
+static double texel_on_light(double texel, double h) { return texel * (LIGHT_HEIGHT - h) * LIGHT_HEIGHT / h; }
+
+/* Each of two edges an axis moves by half an occluder texel and the raster's snapping; the soft shadow map is looked up
+ * bilinearly, which cuts the corners of the ramps by a quarter of its texels. A product of two shares, each at most 1,
+ * is off by at most the sum of what they are off. */
+static double texels_allow(const scene *c, double h) {
+  pn_maps_info info;
+  pn_soft_shadow_map soft;
+  assert_ok(pn_light_maps(c->s.light, &info));
+  assert_ok(pn_soft_shadow_map_image(c->s.light, c->s.receiver, &soft));
+  double texel = fmax(info.s1 - info.s0, info.t1 - info.t0) / info.width;
+  double moved = 2 * (0.5 + 1.0 / 128) * texel_on_light(texel, h);
+  double cut = 2 * 0.25 * texel_on_light(fmax(soft.s1 - soft.s0, soft.t1 - soft.t0) / soft.image.width, h);
+  return (moved + cut) * (1 / (2 * half_u) + 1 / (2 * half_v)) + 1e-4;
 }
 
-/* The largest difference from the closed form, and what texels allow: each of two edges an axis moves by half an
- * occluder texel and the raster's snapping; the soft shadow map is looked up bilinearly, which cuts the corners of the
- * ramps by a quarter of its texels. A product of two shares, each at most 1, is off by at most the sum of what they are
- * off. */
+static double hidden_by(vec p, double size, double h) {
+  return hidden_by_plate(p.x, half_u, size, h) * hidden_by_plate(p.z, half_v, size, h);
+}
+
+/* The largest difference from the closed form, and what texels allow. */
 static double check_plate(const char *spec, bool sum_in_16_bits, double *allowed) {
   scene c = {0};
   add_plate(&c);
   scene_open(&c, 2.2);
   pn_light_desc light = light_above(128);
   float *visibility = stage_visibility(&c.s, &light, spec);
-  pn_maps_info info;
-  pn_soft_shadow_map soft;
-  assert_ok(pn_light_maps(c.s.light, &info));
-  assert_ok(pn_soft_shadow_map_image(c.s.light, c.s.receiver, &soft));
-  double moved = 2 * (0.5 + 1.0 / 128) * texel_on_light(&info), worst = 0;
-  double cut = 0.25 * fmax(soft.s1 - soft.s0, soft.t1 - soft.t0) / soft.image.width * (LIGHT_HEIGHT - plate_h) *
-               LIGHT_HEIGHT / plate_h * 2;
-  *allowed = (moved + cut) * (1 / (2 * half_u) + 1 / (2 * half_v)) + 1e-4;
+  double worst = 0;
+  *allowed = texels_allow(&c, plate_h);
   for (int k = 0; k < SIZE * SIZE; k++) {
     vec p = view_point(&c.v, k % SIZE, k / SIZE);
-    double want = 1 - hidden_by_plate(p.x, half_u, plate, plate_h) * hidden_by_plate(p.z, half_v, plate, plate_h);
-    worst = fmax(worst, fabs(visibility[k] - want));
+    worst = fmax(worst, fabs(visibility[k] - 1 + hidden_by(p, plate, plate_h)));
     assert_true(visibility[k] >= 0 && visibility[k] <= 1);
   }
   print_message("%s: off by %.4f, texels allow %.4f\n", spec, worst, *allowed);
@@ -140,6 +146,114 @@ static void parallel_plate_has_its_closed_form(void **state) {
     double allowed;
     assert_true(check_plate(specs[i], false, &allowed) <= allowed + (strstr(specs[i], "fp16") ? 0.01 : 0));
   }
+}
+
+/* ---- which faces cast -------------------------------------------------------------------------------------------- */
+
+/* Single sheets: one that looks away from the light above a larger one that looks at it. */
+static const double away_size = 0.35, away_h = 2.4, at_size = 0.5, at_h = 1;
+
+static void add_sheets(soup *to) {
+  soup_patch(to, v3(0, away_h, 0), v3(away_size, 0, 0), v3(0, 0, away_size));
+  soup_patch(to, v3(0, at_h, 0), v3(0, 0, at_size), v3(at_size, 0, 0));
+}
+
+/* The larger of what the two hide, each where it is in one of the maps. */
+static void check_sheets(const char *spec, bool away, bool at) {
+  scene c = {0};
+  add_sheets(&c.casters);
+  scene_open(&c, 2.2);
+  pn_light_desc light = light_above(128);
+  float *visibility = stage_visibility(&c.s, &light, spec);
+  double worst = 0, allowed = fmax(away ? texels_allow(&c, away_h) : 0, at ? texels_allow(&c, at_h) : 0);
+  for (int k = 0; k < SIZE * SIZE; k++) {
+    vec p = view_point(&c.v, k % SIZE, k / SIZE);
+    double hidden = fmax(away ? hidden_by(p, away_size, away_h) : 0, at ? hidden_by(p, at_size, at_h) : 0);
+    worst = fmax(worst, fabs(visibility[k] - 1 + hidden));
+  }
+  print_message("%s: off by %.4f, texels allow %.4f\n", spec, worst, allowed);
+  assert_true(allowed < 0.25);
+  assert_true(worst <= allowed);
+  free(visibility);
+  over_ground_close(&c);
+}
+
+/* Section 3.5: the nearest of the faces that look at the light, the farthest of those that look away. Of all faces the
+ * near map has the upper sheet, which looks away, and the far map the lower one; so neither has its closed form. */
+static void culled_maps_have_the_faces_of_their_side(void **state) {
+  (void)state;
+  check_sheets("ssm:faces=culled,sides=front", false, true);
+  check_sheets("ssm:faces=culled,sides=back", true, false);
+  check_sheets("ssm:faces=culled,merge=0", true, true);
+}
+
+/* A sheet that looks away from the light casts by way of the far map alone. */
+static void sheets_that_look_away_cast_from_the_far_map(void **state) {
+  (void)state;
+  static const char *const specs[] = {"ssm:faces=culled,sides=front", "ssm:faces=culled,sides=back", "ssm:faces=culled",
+                                      "ssm:sides=front"};
+  scene c = {0};
+  add_plate(&c);
+  scene_open(&c, 2.2);
+  pn_light_desc light = light_above(128);
+  for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) {
+    float *visibility = stage_visibility(&c.s, &light, specs[i]);
+    for (int k = 0; k < SIZE * SIZE; k++) {
+      double hidden = i ? hidden_by(view_point(&c.v, k % SIZE, k / SIZE), plate, plate_h) : 0;
+      assert_true(fabs(visibility[k] - 1 + hidden) <= (i ? texels_allow(&c, plate_h) : 0));
+    }
+    free(visibility);
+  }
+  over_ground_close(&c);
+}
+
+/* The same sheets, to one side, with their mirror image made of triangles or by the instance's matrix. Winding comes
+ * along with triangles; a matrix turns it round. */
+static float *mirrored_sheets(bool by_matrix, bool clockwise) {
+  static const float matrix[16] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -0.8f, 0, 0, 1};
+  scene c = {0};
+  soup sheets = {0};
+  add_sheets(&sheets);
+  for (int i = 0; i < sheets.count; i++)
+    for (int k = 0; k < 3; k++) {
+      float *x = sheets.list[i].p[k];
+      *x += 0.2f * x[1]; /* not its own mirror image */
+      if (!by_matrix) *x = -*x - 0.8f;
+    }
+  for (int i = 0; i < sheets.count && by_matrix == clockwise; i++) {
+    triangle t = sheets.list[i];
+    memcpy(sheets.list[i].p[1], t.p[2], sizeof t.p[2]);
+    memcpy(sheets.list[i].p[2], t.p[1], sizeof t.p[1]);
+  }
+  scene_open(&c, 2.2);
+  const pn_mesh_desc desc = {.positions = {.data = sheets.list, .count = 3 * (size_t)sheets.count},
+                             .clockwise = clockwise};
+  static const float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  pn_mesh mesh;
+  assert_ok(pn_mesh_add(c.s.casters, &desc, &mesh));
+  assert_ok(pn_instance_add(c.s.casters, mesh, by_matrix ? matrix : identity, 0, NULL));
+  pn_light_desc light = light_above(128);
+  float *visibility = stage_visibility(&c.s, &light, "ssm:faces=culled,sides=front,size=128");
+  soup_free(&sheets);
+  over_ground_close(&c);
+  return visibility;
+}
+
+static void mirrored_faces_look_where_their_image_does(void **state) {
+  (void)state;
+  float *image = mirrored_sheets(false, false), least = 1;
+  for (int way = 1; way < 4; way++) {
+    float *other = mirrored_sheets(way & 1, way & 2), apart = 0;
+    for (int k = 0; k < SIZE * SIZE; k++) {
+      apart = fmaxf(apart, fabsf(image[k] - other[k]));
+      least = fminf(least, image[k]);
+    }
+    print_message("mirrored, way %d: %g apart\n", way, (double)apart);
+    assert_true(apart <= 1e-4f);
+    free(other);
+  }
+  assert_true(least < 0.5f);
+  free(image);
 }
 
 /* ---- receivers whose horizon cuts the light ---------------------------------------------------------------------- */
@@ -451,6 +565,9 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(gpu_and_cpu_lists_agree),
       cmocka_unit_test(parallel_plate_has_its_closed_form),
+      cmocka_unit_test(culled_maps_have_the_faces_of_their_side),
+      cmocka_unit_test(sheets_that_look_away_cast_from_the_far_map),
+      cmocka_unit_test(mirrored_faces_look_where_their_image_does),
       cmocka_unit_test(blocks_do_not_cross_horizons),
       cmocka_unit_test(near_casters_leave_far_ones_their_shadow),
       cmocka_unit_test(sums_in_16_bits_lose_small_patches),

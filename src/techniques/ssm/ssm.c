@@ -7,14 +7,16 @@
 #include "gl/host.h"
 #include "maps/texels.h"
 
-enum { PRESET, SIDES, ACCUMULATE, EXTENTS, MERGE, SIZE, LAYERS, COUNT };
+enum { PRESET, SIDES, FACES, ACCUMULATE, EXTENTS, MERGE, SIZE, LAYERS, COUNT };
 enum { SIDES_BOTH, SIDES_FRONT, SIDES_BACK };
+enum { FACES_ANY, FACES_CULLED };
 enum { ACCUMULATE_FP32, ACCUMULATE_BATCHED, ACCUMULATE_FP16 };
 enum { EXTENTS_GPU, EXTENTS_CPU };
 enum { RECEIVER_LAYERS_MAX = 8 };
 
 static const char *const presets[] = {"fast", "good", "exact", NULL};
 static const char *const sides[] = {"both", "front", "back", NULL};
+static const char *const faces[] = {"any", "culled", NULL};
 static const char *const accumulations[] = {"fp32", "fp16-batched", "fp16", NULL};
 static const char *const extents[] = {"gpu", "cpu", NULL};
 
@@ -23,6 +25,10 @@ static const pn_parameter parameters[COUNT] = {
                 PN_CHOICE, 0, 2, 1, presets},
     [SIDES] = {"sides", "", "which surfaces cast: the nearest and the farthest, merged by maximum, or one of them",
                "Soft Shadow Maps, section 3.5", PN_CHOICE, 0, 2, SIDES_BOTH, sides},
+    [FACES] = {"faces", "",
+               "nearest and farthest of all faces; or nearest of those that look at the light, farthest of those that "
+               "look away",
+               "Soft Shadow Maps, section 3.5", PN_CHOICE, 0, 1, FACES_ANY, faces},
     [ACCUMULATE] = {"accumulate", "",
                     "sums in 32-bit floats; in 16-bit floats by batches of sqrt(M) micropatches; in 16-bit floats",
                     "Soft Shadow Maps, appendix A", PN_CHOICE, 0, 2, ACCUMULATE_FP32, accumulations},
@@ -56,8 +62,12 @@ static bool has_front(const double *values) { return values[SIDES] != SIDES_BACK
 static bool has_back(const double *values) { return values[SIDES] != SIDES_FRONT; }
 
 static void want(const double *values, pni_maps_want *out) {
-  *out = (pni_maps_want){
-      .near_layers = has_front(values), .farthest = has_back(values), .range = {.structure = PNI_RANGE_PYRAMID}};
+  bool culled = values[FACES] == FACES_CULLED;
+  *out = (pni_maps_want){.near_layers = has_front(values),
+                         .farthest = has_back(values),
+                         .near_faces = culled ? PN_FACES_FRONT : (pn_faces)0,
+                         .far_faces = culled ? PN_FACES_BACK : (pn_faces)0,
+                         .range = {.structure = PNI_RANGE_PYRAMID}};
 }
 
 /* ---- what it keeps for a pair ------------------------------------------------------------------------------------ */
