@@ -57,6 +57,7 @@ static const change changes[] = {
     {"ssm", "layers", 2, 0, "ssm:layers=2"},
     {"ssm", "merge", 1, 0, "ssm:merge=1"},
     {"ssm", "accumulate", 1, 0, "ssm:accumulate=fp16-batched"},
+    {"ssm", "accumulate", 3, 0, "ssm:accumulate=fp16-consecutive"},
     {"average:samples=20", "samples", 40, 1, "average:samples=40"},
 };
 

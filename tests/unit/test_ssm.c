@@ -386,6 +386,89 @@ static void sums_in_16_bits_lose_small_patches(void **state) {
   assert_true(check_plate("ssm:accumulate=fp16,merge=0", true, &allowed) > 0.1);
 }
 
+/* A sum of positive numbers in binary16: the exact one, rounded to 11 bits. GL leaves open how: IEEE 754 rounds to the
+ * nearest, to even; Mesa's software towards zero. */
+typedef double (*rounding)(double);
+static double half_sum(double a, double b, rounding round) {
+  int exponent;
+  frexp(a + b, &exponent);
+  double step = ldexp(1, exponent < -13 ? -24 : exponent - 11);
+  return round((a + b) / step) * step;
+}
+
+/* What the micropatch of an entry hides from a receiver at (s, t, w). */
+static double hidden_by_entry(const pni_light_block *b, const float *entry, const double at[3]) {
+  const pni_map_block *map = &b->maps[0];
+  double share = 1, beyond = entry[3] - at[2];
+  for (int i = 0; i < 2; i++) {
+    double low = map->origin[i] + entry[i] / map->density[i], high = low + 1 / map->density[i], half = b->extent[i];
+    share *=
+        (clamped((high - at[i]) / beyond, -half, half) - clamped((low - at[i]) / beyond, -half, half)) / (2 * half);
+  }
+  return share;
+}
+
+/* What the list's micropatches hide from that receiver, count numbers; returns their exact sum. */
+static double list_terms(const pni_light_block *b, const float *list, int count, const double at[3], double *terms) {
+  double exact = 0;
+  for (int k = 0; k < count; k++) exact += terms[k] = hidden_by_entry(b, list + 8 * (size_t)k, at);
+  return exact;
+}
+
+/* Their sum in 16 bits, by batches of so many one after the other. */
+static double model_sum(const double *terms, int count, int batch, rounding round) {
+  double sum = 0;
+  for (int first = 0; first < count; first += batch) {
+    double part = 0;
+    for (int k = first; k < count && k < first + batch; k++) part = half_sum(part, terms[k], round);
+    sum = half_sum(sum, part, round);
+  }
+  return sum;
+}
+
+/* The soft shadow map against models of 16-bit sums, at every third texel. Returns how far the map is off the exact
+ * sum at most. */
+static double check_model(const char *spec, bool by_batches) {
+  static const rounding roundings[2] = {nearbyint, trunc};
+  scene c = {0};
+  add_plate(&c);
+  scene_open(&c, 2.2);
+  pn_light_desc light = light_above(256);
+  free(stage_visibility(&c.s, &light, spec));
+  pni_ssm_state *kept = pni_pair_find(&c.s.light->object, &c.s.receiver->object)->kept.state;
+  const pni_seen_want *w = &kept->seen.want;
+  int count = gpu_total(kept), width = w->width, height = w->height,
+      batch = by_batches ? (int)ceil(sqrt(count)) : count;
+  float *list = read_list(kept, count), *sums = gl_read_texture(kept->soft.id, 0, 0, width, height, 1);
+  float *seen = gl_read_texture(kept->seen.layers.id, 0, 0, width, height, 4);
+  double apart[2] = {0, 0}, lost = 0, *terms = malloc((size_t)count * sizeof *terms);
+  for (int k = 0; k < width * height; k++) {
+    int x = k % width, y = k / width;
+    if (x % 3 || y % 3 || pni_is_nothing((double)seen[4 * k])) continue;
+    const double at[3] = {w->bounds[0] + (x + 0.5) / width * (w->bounds[2] - w->bounds[0]),
+                          w->bounds[1] + (y + 0.5) / height * (w->bounds[3] - w->bounds[1]), (double)seen[4 * k]};
+    double exact = list_terms(&c.s.light->maps.block, list, count, at, terms);
+    for (int i = 0; i < 2; i++)
+      apart[i] = fmax(apart[i], fabs((double)sums[k] - model_sum(terms, count, batch, roundings[i])));
+    lost = fmax(lost, fabs((double)sums[k] - exact));
+  }
+  print_message("%s, %d micropatches: %.5f and %.5f beside the models, %.4f beside the exact sum\n", spec, count,
+                apart[0], apart[1], lost);
+  assert_true(count > 10000);
+  assert_true(fmin(apart[0], apart[1]) <= 0x1p-9); /* terms in float may be rounded to the other side */
+  free(list), free(sums), free(seen), free(terms);
+  over_ground_close(&c);
+  return lost;
+}
+
+/* Term by term, batch by batch: plain sums end where a term is less than their last bit. */
+static void sums_in_16_bits_are_what_they_say(void **state) {
+  (void)state;
+  double plain = check_model("ssm:merge=0,sides=front,layers=1,size=48,accumulate=fp16", false);
+  double batches = check_model("ssm:merge=0,sides=front,layers=1,size=48,accumulate=fp16-consecutive", true);
+  assert_true(batches < plain / 4);
+}
+
 static void devices_without_float_blending_sum_by_batches(void **state) {
   (void)state;
   scene c = {0};
@@ -571,6 +654,7 @@ int main(void) {
       cmocka_unit_test(blocks_do_not_cross_horizons),
       cmocka_unit_test(near_casters_leave_far_ones_their_shadow),
       cmocka_unit_test(sums_in_16_bits_lose_small_patches),
+      cmocka_unit_test(sums_in_16_bits_are_what_they_say),
       cmocka_unit_test(devices_without_float_blending_sum_by_batches),
       cmocka_unit_test(counted_draws_change_nothing),
       cmocka_unit_test(bound_holds_overlaps),

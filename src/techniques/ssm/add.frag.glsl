@@ -1,5 +1,5 @@
-// A batch of micropatches, and the sum of those before it (Soft Shadow Maps, appendix A). The sum is in 32 bits,
-// which can be drawn to where they cannot be blended.
+// A batch of micropatches, and the sum of those before it. Where the sum is in 32 bits, it can be drawn to where they
+// cannot be blended.
 #include "shaders/precision.glsl"
 uniform highp sampler2D pn_sum;  // the sum
 uniform highp sampler2D pn_batch; // the batch

@@ -57,17 +57,20 @@ static pn_result add_batch(pni_ssm_scattering *s) {
   return PN_OK;
 }
 
-/* Appendix A's way round 16 bits: about sqrt(M) micropatches are summed up aside before they meet the rest. Neighbours
- * in the list cover the same texels, so a batch takes every sqrt(M)-th: what meets in a texel of it is few. */
+/* About sqrt(M) micropatches are summed up aside before they meet the rest, so that small numbers meet small ones.
+ * Neighbours in the list cover the same texels; so of a batch that takes every sqrt(M)-th few meet in a texel, and of a
+ * consecutive one nearly all. */
 static pn_result draw_batches(pni_ssm_scattering *s, const pni_ssm_list *list, int total, int count) {
-  int step = (int)ceil(sqrt(total));
+  int root = (int)ceil(sqrt(total)), step = s->consecutive ? 1 : root, stride = s->consecutive ? root : 1;
+  int batches = s->consecutive ? (count + root - 1) / root : root;
   pn_result result = PN_OK;
-  for (int first = 0; first < step && first < count && result == PN_OK; first++) {
+  for (int i = 0; i < batches && i * stride < count && result == PN_OK; i++) {
+    int first = i * stride, entries = (count - first + step - 1) / step;
     pni_pass pass = sum_pass(s, "batch of micropatches", pni_image_of(&s->state->batch, 0, 0));
     pass.clear = zero;
     result = begin_patches(s, list, &pass, first, step);
     if (result != PN_OK) return result;
-    pni_draw_triangles(s->job->gpu, 6 * ((count - first + step - 1) / step));
+    pni_draw_triangles(s->job->gpu, 6 * (entries < root ? entries : root));
     result = add_batch(s);
   }
   return result;

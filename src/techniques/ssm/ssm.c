@@ -10,14 +10,14 @@
 enum { PRESET, SIDES, FACES, ACCUMULATE, EXTENTS, MERGE, SIZE, LAYERS, COUNT };
 enum { SIDES_BOTH, SIDES_FRONT, SIDES_BACK };
 enum { FACES_ANY, FACES_CULLED };
-enum { ACCUMULATE_FP32, ACCUMULATE_BATCHED, ACCUMULATE_FP16 };
+enum { ACCUMULATE_FP32, ACCUMULATE_BATCHED, ACCUMULATE_FP16, ACCUMULATE_CONSECUTIVE };
 enum { EXTENTS_GPU, EXTENTS_CPU };
 enum { RECEIVER_LAYERS_MAX = 8 };
 
 static const char *const presets[] = {"fast", "good", "exact", NULL};
 static const char *const sides[] = {"both", "front", "back", NULL};
 static const char *const faces[] = {"any", "culled", NULL};
-static const char *const accumulations[] = {"fp32", "fp16-batched", "fp16", NULL};
+static const char *const accumulations[] = {"fp32", "fp16-batched", "fp16", "fp16-consecutive", NULL};
 static const char *const extents[] = {"gpu", "cpu", NULL};
 
 static const pn_parameter parameters[COUNT] = {
@@ -29,9 +29,11 @@ static const pn_parameter parameters[COUNT] = {
                "nearest and farthest of all faces; or nearest of those that look at the light, farthest of those that "
                "look away",
                "Soft Shadow Maps, section 3.5", PN_CHOICE, 0, 1, FACES_ANY, faces},
-    [ACCUMULATE] = {"accumulate", "",
-                    "sums in 32-bit floats; in 16-bit floats by batches of sqrt(M) micropatches; in 16-bit floats",
-                    "Soft Shadow Maps, appendix A", PN_CHOICE, 0, 2, ACCUMULATE_FP32, accumulations},
+    [ACCUMULATE] =
+        {"accumulate", "",
+         "sums in 32-bit floats; 16-bit floats, by batches of sqrt(M) of M micropatches from all over the list; "
+         "16-bit floats; the same, by batches of neighbours",
+         "Soft Shadow Maps, section 5.1.3", PN_CHOICE, 0, 3, ACCUMULATE_FP32, accumulations},
     [EXTENTS] = {"extents", "", "where penumbra extents are found; cpu reads the maps back, as the paper did",
                  "Soft Shadow Maps, sections 4.1 and 4.3", PN_CHOICE, 0, 1, EXTENTS_GPU, extents},
     [MERGE] =
@@ -253,12 +255,13 @@ static pn_result draw_counts(const pni_job *job) {
 static pn_result shape(const pni_job *job, int accumulate) {
   pni_ssm_state *state = job->pair_state;
   const pni_seen_want *w = &state->seen.want;
-  pni_format format = accumulate == ACCUMULATE_FP16 ? PNI_R16F : PNI_R32F;
+  bool batched = accumulate == ACCUMULATE_BATCHED || accumulate == ACCUMULATE_CONSECUTIVE;
+  pni_format format = accumulate == ACCUMULATE_FP32 || accumulate == ACCUMULATE_BATCHED ? PNI_R32F : PNI_R16F;
   pn_result result = shape_soft(job, &state->soft, "soft shadow map", format);
-  if (result == PN_OK && accumulate == ACCUMULATE_BATCHED) {
+  if (result == PN_OK && batched) {
     result = pni_texture_shape(job->gpu, &state->batch, "batch", PNI_R16F, w->width, w->height, 0, 1);
     for (int i = 0; i < 2 && result == PN_OK; i++)
-      result = pni_texture_shape(job->gpu, &state->sums[i], "sum of batches", PNI_R32F, w->width, w->height, 0, 1);
+      result = pni_texture_shape(job->gpu, &state->sums[i], "sum of batches", format, w->width, w->height, 0, 1);
   }
   return result == PN_OK ? pni_ssm_gpu_shape(job) : result;
 }
@@ -267,7 +270,8 @@ static pn_result draw_shadow(const pni_job *job, const pni_region *seen, const p
   pni_ssm_state *state = job->pair_state;
   int accumulate = accumulation(job);
   pni_ssm_scattering s = start(job, PNI_SSM_SUM_SHADOW, &state->soft);
-  s.by_batches = accumulate == ACCUMULATE_BATCHED;
+  s.by_batches = accumulate == ACCUMULATE_BATCHED || accumulate == ACCUMULATE_CONSECUTIVE;
+  s.consecutive = accumulate == ACCUMULATE_CONSECUTIVE;
   if (job->values[ACCUMULATE] == ACCUMULATE_FP16 && !job->gpu->plan.on) warn_of_loss(job, seen);
   pn_result result = pni_seen_draw(job, where, &state->seen);
   if (result == PN_OK) result = shape(job, accumulate);

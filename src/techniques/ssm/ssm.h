@@ -60,9 +60,10 @@ typedef enum { PNI_SSM_SUM_SHADOW, PNI_SSM_SUM_BOUND, PNI_SSM_SUM_COUNT } pni_ss
 typedef struct {
   const pni_job *job;
   pni_ssm_state *state;
-  bool by_batches; /* of the shadow only */
-  bool on_cpu;     /* where extents are found */
-  double share;    /* as pni_ssm_list's */
+  bool by_batches;  /* of the shadow only */
+  bool consecutive; /* a batch takes neighbours in the list, not entries from all over it */
+  bool on_cpu;      /* where extents are found */
+  double share;     /* as pni_ssm_list's */
   pni_ssm_sum_kind kind;
   const pni_texture *soft; /* what is summed up into */
   int sum;                 /* by batches: which of two images holds it */
