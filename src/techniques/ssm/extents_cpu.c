@@ -1,6 +1,6 @@
-/* Penumbra extents on the CPU, as in the paper (Soft Shadow Maps, section 4.1): occluder and receiver map are read
- * back, and a loop goes over the micropatches. The same list as the GPU makes, in the same order: the functions are
- * those of node.glsl and patches.glsl, under the same names. */
+/* Penumbra extents on the CPU (Soft Shadow Maps, section 4.1): the occluder map is read back, and a loop goes over the
+ * micropatches. Unlike in the paper the receiver map is read back too, since extents reach what is seen. The same list
+ * as the GPU makes, in the same order: the functions are those of node.glsl and patches.glsl, under the same names. */
 #include <math.h>
 #include <string.h>
 

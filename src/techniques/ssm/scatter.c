@@ -1,5 +1,5 @@
-/* Accumulation (Soft Shadow Maps, sections 3.4 and 4.1, appendix A): micropatches drawn and summed up, layer by layer
- * of the soft shadow map. */
+/* Accumulation (Soft Shadow Maps, sections 3.4 and 4.1): micropatches drawn and summed up, layer by layer of the soft
+ * shadow map. */
 #include <math.h>
 
 #include "gl/host.h"

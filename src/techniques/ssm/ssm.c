@@ -31,10 +31,10 @@ static const pn_parameter parameters[COUNT] = {
                "Soft Shadow Maps, section 3.5", PN_CHOICE, 0, 1, FACES_ANY, faces},
     [ACCUMULATE] =
         {"accumulate", "",
-         "sums in 32-bit floats; 16-bit floats, by batches of sqrt(M) of M micropatches from all over the list; "
-         "16-bit floats; the same, by batches of neighbours",
+         "sums in 32 bits; in 16 bits by batches of sqrt(M) of M micropatches, summed in 32; one by one in 16 bits; "
+         "in 16 bits by batches of neighbours",
          "Soft Shadow Maps, section 5.1.3", PN_CHOICE, 0, 3, ACCUMULATE_FP32, accumulations},
-    [EXTENTS] = {"extents", "", "where penumbra extents are found; cpu reads the maps back, as the paper did",
+    [EXTENTS] = {"extents", "", "where penumbra extents are found; cpu reads the maps back, the paper the occluder map",
                  "Soft Shadow Maps, sections 4.1 and 4.3", PN_CHOICE, 0, 1, EXTENTS_GPU, extents},
     [MERGE] =
         {"merge", "%",
