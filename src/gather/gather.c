@@ -37,6 +37,7 @@ typedef struct {
   pni_target target;
   int width, height, scale;
   bool upsample; /* brings the image at reduced resolution up */
+  bool area;     /* red is visibility, green what the accumulated area leaves */
   bool debug;
 } gather_pass;
 
@@ -46,7 +47,8 @@ static pn_result draw(const pni_job *job, const gather_pass *p) {
   char defines[PNI_TECHNIQUE_DEFINES + PNI_RECEIVER_DEFINES + 64];
   pni_gather_defines(job->gathering, job->table, job->values, technique);
   pni_receiver_defines(job->receiver, receiver);
-  snprintf(defines, sizeof defines, "%s%sPN_UPSAMPLE %d\nPN_DEBUG %d\n", technique, receiver, p->upsample, p->debug);
+  snprintf(defines, sizeof defines, "%s%sPN_UPSAMPLE %d\nPN_AREA %d\nPN_DEBUG %d\n", technique, receiver, p->upsample,
+           p->area, p->debug);
   pni_pass pass = {.name = job->table->name,
                    .program = {NULL, "gather/visibility.glsl", job->gathering->shader, defines},
                    .color = {p->target.image},
@@ -67,30 +69,76 @@ static pn_result draw(const pni_job *job, const gather_pass *p) {
   return PN_OK;
 }
 
-static pn_result draw_visibility(const pni_job *job, pni_target target, int width, int height, int scale) {
-  gather_pass p = {target, width, height, scale, false, false};
+static pn_result draw_visibility(const pni_job *job, gather_pass p) {
   pn_result result = PN_OK;
   p.debug = (job->gpu->debug & PN_DEBUG_SEARCH) && job->gathering->searches;
-  if (p.debug) result = pni_texture_shape(job->gpu, job->search, "search", PNI_RGBA32F, width, height, 0, 1);
+  if (p.debug) result = pni_texture_shape(job->gpu, job->search, "search", PNI_RGBA32F, p.width, p.height, 0, 1);
   if (p.debug && result == PN_OK)
-    result = pni_texture_shape(job->gpu, job->levels, "levels", PNI_RG32F, width, height, 0, 1);
+    result = pni_texture_shape(job->gpu, job->levels, "levels", PNI_RG32F, p.width, p.height, 0, 1);
   if (result == PN_OK) result = draw(job, &p);
   pni_job_mark(job, "visibility");
   return result;
 }
 
-pn_result pni_gather(const pni_job *job) {
+/* Where what is gathered goes, at the resolution that it is gathered at. */
+static pn_result gathered(const pni_job *job, gather_pass *out) {
   const pn_receiver_desc *view = &job->receiver->desc;
-  if (view->scale == 1) return draw_visibility(job, job->target, view->width, view->height, 1);
-  int width, height;
-  pni_receiver_low_size(job->receiver, &width, &height);
-  pn_result result = pni_texture_shape(job->gpu, job->low, "visibility, low", PNI_R32F, width, height, 0, 1);
-  if (result != PN_OK) return result;
-  pni_target low = {pni_image_of(job->low, 0, 0), 0};
-  result = draw_visibility(job, low, width, height, view->scale);
-  if (result != PN_OK) return result;
-  gather_pass up = {job->target, view->width, view->height, view->scale, true, false};
-  result = draw(job, &up);
+  *out = (gather_pass){.target = job->target, .width = view->width, .height = view->height, .scale = view->scale};
+  if (view->scale == 1) return PN_OK;
+  pni_receiver_low_size(job->receiver, &out->width, &out->height);
+  pn_result result = pni_texture_shape(job->gpu, job->low, "visibility, low", PNI_R32F, out->width, out->height, 0, 1);
+  out->target = (pni_target){pni_image_of(job->low, 0, 0), 0};
+  return result;
+}
+
+static pn_result upsample(const pni_job *job) {
+  const pn_receiver_desc *view = &job->receiver->desc;
+  if (view->scale == 1) return PN_OK;
+  gather_pass up = {
+      .target = job->target, .width = view->width, .height = view->height, .scale = view->scale, .upsample = true};
+  pn_result result = draw(job, &up);
   pni_job_mark(job, "upsample");
   return result;
+}
+
+pn_result pni_gather(const pni_job *job) {
+  gather_pass p;
+  pn_result result = gathered(job, &p);
+  if (result == PN_OK) result = draw_visibility(job, p);
+  return result == PN_OK ? upsample(job) : result;
+}
+
+/* ---- smoothed ---------------------------------------------------------------------------------------------------- */
+
+static pn_result smooth_once(const pni_job *job, const pni_smoothing *smoothing, const pni_texture *from,
+                             pni_target to) {
+  pni_pass pass = {.name = "smooth",
+                   .program = {NULL, "gather/smooth.frag.glsl", NULL, ""},
+                   .color = {to.image},
+                   .channels = to.channels,
+                   .width = from->width,
+                   .height = from->height};
+  pn_result result = pni_pass_begin(job->gpu, &pass);
+  if (result != PN_OK) return result;
+  pni_set_texture(job->gpu, "pn_from", from);
+  pni_set_floats(job->gpu, "pn_bounds", (const float[4]){smoothing->way, smoothing->most, smoothing->within_surfaces});
+  pni_draw_screen(job->gpu);
+  return PN_OK;
+}
+
+pn_result pni_gather_smoothed(const pni_job *job, const pni_smoothing *smoothing, pni_texture both[2]) {
+  gather_pass p;
+  pn_result result = gathered(job, &p);
+  pni_target last = p.target;
+  for (int i = 0; i < 2 && result == PN_OK; i++)
+    result = pni_texture_shape(job->gpu, &both[i], "visibility and area", PNI_RGBA32F, p.width, p.height, 0, 1);
+  p.target = (pni_target){pni_image_of(&both[0], 0, 0), 0};
+  p.area = true;
+  if (result == PN_OK) result = draw_visibility(job, p);
+  for (int i = 0; i < smoothing->passes && result == PN_OK; i++) {
+    pni_target next = {pni_image_of(&both[(i + 1) % 2], 0, 0), 0};
+    result = smooth_once(job, smoothing, &both[i % 2], i == smoothing->passes - 1 ? last : next);
+  }
+  pni_job_mark(job, "smooth");
+  return result == PN_OK ? upsample(job) : result;
 }

@@ -21,6 +21,17 @@ typedef struct pni_gathering {
 /* pni_technique_class.draw of all of them. */
 pn_result pni_gather(const pni_job *job);
 
+/* The post-filter (Bitmask Soft Shadows, section 3.1). */
+typedef struct {
+  int passes; /* at least one */
+  float way;  /* that a pass goes of it: at less than 1 every other pixel cannot drift from the ones between */
+  float most; /* that all of them together may change visibility by */
+  bool within_surfaces; /* between pixels of one surface only */
+} pni_smoothing;
+/* As pni_gather, for a technique whose shader knows PN_AREA: its visibility smoothed by what its accumulated area does.
+ * both: scratch that the technique keeps with a pair. */
+pn_result pni_gather_smoothed(const pni_job *job, const pni_smoothing *smoothing, pni_texture both[2]);
+
 /* The texture beside the depth maps. */
 const pni_texture *pni_gather_beside(const pni_gathering *gathering, const pni_maps *maps, const void *light_state);
 /* The shader's defines: its parameters' places by name, PN_PARAMETER_NAME, then what depends on these values. */

@@ -4,19 +4,6 @@
 
 uniform highp sampler2D pn_low; // the low-resolution visibility
 
-// Full-resolution pixel that low-resolution sample i stands for.
-ivec2 pn_sample_pixel(ivec2 i) { return min(i * pn_offset.z + pn_offset.w, pn_view.zw - 1); }
-
-bool pn_same_surface(pn_Surface s, ivec2 other, float pixel_size) {
-  if (!pn_receives(other)) return false;
-  pn_Surface o = pn_surface(other);
-  vec3 d = o.p - s.p;
-  float lateral = length(d);
-  // Half a pixel of height over the block's width: what a gently curved surface has, and a step has not.
-  float slack = 0.5 * pixel_size + dot(abs(s.n), s.error + o.error) + (s.sigma + o.sigma) * lateral;
-  return abs(dot(s.n, d)) <= slack && dot(s.n, o.n) > 0.9;
-}
-
 pn_Visibility pn_upsampled(ivec2 pixel) {
   if (!pn_receives(pixel)) return pn_Visibility(1.0);
   pn_Surface s = pn_surface(pixel);
@@ -24,7 +11,7 @@ pn_Visibility pn_upsampled(ivec2 pixel) {
   vec2 low = (vec2(pixel) - float(pn_offset.w)) / scale;
   ivec2 base = ivec2(floor(low));
   vec2 f = low - vec2(base);
-  float pixel_size = length(pn_point(pixel + ivec2(1, 0), pn_depth_at(pixel)) - s.p);
+  float pixel_size = pn_pixel_size(pixel, s);
   ivec2 size = textureSize(pn_low, 0);
   float weights = 0.0;
   pn_Visibility sum = pn_Visibility(0.0), least = pn_Visibility(1.0), most = pn_Visibility(0.0);

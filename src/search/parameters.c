@@ -32,8 +32,7 @@ int pni_search_defines(const pni_search_values *v, char *out, size_t size) {
                   (int)v->primitive, v->gaps, v->edges, descends(v), refine, TEXELS_MAX);
 }
 
-void pni_search_tell(const pni_job *job, const pni_search_values *v) {
-  pni_search_state *state = job->pair_state;
+void pni_search_tell(const pni_job *job, pni_search_state *state, const pni_search_values *v) {
   const pni_texture *depth = &job->maps->depth;
   int most = TEXELS_MAX / depth->layers;
   bool coarser = !descends(v) && depth->width * depth->height > most && (v->cap == 0 || v->cap * v->cap > most);

@@ -64,8 +64,7 @@ pni_range_kind pni_search_range(const pni_search_values *values);
 float pni_search_focus(double percent);
 /* The lines search.glsl wants. Returns their length. */
 int pni_search_defines(const pni_search_values *values, char *out, size_t size);
-/* Tells the host, once, where windows may be too large to take every texel of them; job->pair_state is a
- * pni_search_state. */
-void pni_search_tell(const pni_job *job, const pni_search_values *values);
+/* Tells the host, once, where windows may be too large to take every texel of them; state: kept with the pair. */
+void pni_search_tell(const pni_job *job, pni_search_state *state, const pni_search_values *values);
 
 #endif

@@ -10,6 +10,10 @@
 //   PN_REFINE     what narrows the window first: 0 nothing, 1 the range pyramid, 2 the range stack, 3 a stack
 //                 above a pyramid
 //   PN_TEXELS_MAX how many texels or blocks a receiver without descent looks at
+//   PN_AREA       1: what primitives hide is added up as areas too, beside what the cover makes of them; may be missing
+#ifndef PN_AREA
+#define PN_AREA 0
+#endif
 #include "search/window.glsl"
 
 // What the search did, for looking at (docs/techniques/bitmask.md): class (0 not searched, 1 lit, 2 umbra, 3
@@ -19,6 +23,19 @@ vec4 pn_search_done = vec4(0.0);
 // what narrowed the window last.
 vec2 pn_search_levels = vec2(0.0);
 void pn_used_range_level(int level) { pn_search_levels.y = max(pn_search_levels.y, float(level)); }
+
+#if PN_AREA
+// What the primitives hide of the light, as sum of areas over all layers and maps (docs/techniques/bitmask.md, "The
+// post-filter"). Overlaps count twice, and it has no end at 1: so it changes smoothly from pixel to pixel.
+float pn_hidden_area = 0.0;
+// A block whose bits are set already is looked at no closer when its area is known to this much.
+#define PN_AREA_ERROR (1.0 / 512.0)
+
+float pn_area_on_light(vec2 low, vec2 high) {
+  vec2 size = max(clamp(high, 0.0, 1.0) - clamp(low, 0.0, 1.0), 0.0);
+  return size.x * size.y;
+}
+#endif
 
 // Turns of the descent, over all layers and maps of this receiver. Software GL ends a shader's loops after 65535
 // turns in all, so past PN_TURNS blocks are looked at no closer: what is left costs a few turns for each level.
@@ -131,11 +148,23 @@ bool pn_texel_hides(int light, pn_ShadedPoint r, int map, ivec2 texel, float w) 
   return pn_blocks_apart(light, r, vec3(pn_map_st(light, map, vec2(texel) + 0.5), w));
 }
 
+// Counts one primitive that is covered, its rectangle on the light from low to high.
+void pn_count_primitive(vec2 low, vec2 high) {
+  pn_search_done.z += 1.0;
+#if PN_AREA
+  pn_hidden_area += pn_area_on_light(low, high);
+#endif
+}
+
+void pn_add_rectangle(vec2 low, vec2 high, inout pn_Cover c) {
+  pn_cover_rectangle(c, low, high);
+  pn_count_primitive(low, high);
+}
+
 // A block of texels, from low to high (map coordinates), at w: a micropatch, or the coarser one that stands for many.
 void pn_add_patch(int light, pn_ShadedPoint r, vec2 low, vec2 high, float w, inout pn_Cover c) {
   float dw = w - r.m.z;
-  pn_cover_rectangle(c, pn_on_light(light, low - r.m.xy, dw), pn_on_light(light, high - r.m.xy, dw));
-  pn_search_done.z += 1.0;
+  pn_add_rectangle(pn_on_light(light, low - r.m.xy, dw), pn_on_light(light, high - r.m.xy, dw), c);
 }
 
 void pn_texel_patch(int light, highp sampler2DArray maps, pn_ShadedPoint r, int map, int layer, ivec2 texel,
@@ -156,8 +185,7 @@ void pn_texel_patch(int light, highp sampler2DArray maps, pn_ShadedPoint r, int 
     a.y = min(a.y, pn_on_light(light, low, below - r.m.z).y);
   }
 #endif
-  pn_cover_rectangle(c, a, b);
-  pn_search_done.z += 1.0;
+  pn_add_rectangle(a, b, c);
 }
 
 #if PN_PRIMITIVE != PN_PATCH
@@ -455,7 +483,7 @@ void pn_scan_quad(int light, highp sampler2DArray range, pn_ShadedPoint r, pn_Sh
     pn_cover_quad(c, q);
   else
     pn_cover_rectangle(c, q.low, q.high);
-  pn_search_done.z += 1.0;
+  pn_count_primitive(q.low, q.high);
 }
 #endif
 
@@ -546,6 +574,17 @@ struct pn_Walk {
   bool exact;        // whole, it may be covered exactly
 };
 
+#if PN_AREA
+// What becomes of a block whose bits are set already, for its area: skipped where nothing of it lies on the light; its
+// corners, or its rectangle, stand for it where all that it may hide differs little from what it hides at least; else
+// its parts do.
+int pn_visit_covered(pn_Rectangle least, pn_Rectangle most, bool leaf) {
+  float many = pn_area_on_light(most.low, most.high);
+  if (many == 0.0) return PN_SKIP;
+  return leaf || many - pn_area_on_light(least.low, least.high) <= PN_AREA_ERROR ? PN_STAY : PN_DOWN;
+}
+#endif
+
 // One block of the pyramid, 2^level primitives a side: skipped, covered, or looked at closer. Wherever in its range the
 // surface lies, it hides no more than the hull of the block's projections at both ends of the range, and, where it has
 // neither hole nor gap, no less than what both have in common.
@@ -590,9 +629,17 @@ int pn_visit_block(int light, highp sampler2DArray range, pn_ShadedPoint r, pn_S
   bool leaf = walk.level == 0 || pn_search_turns >= PN_TURNS;
   if (one) {
     most = least = pn_Rectangle(0.5 * (a0 + a1), 0.5 * (b0 + b1));
-    pn_search_done.z += 1.0;
+    pn_count_primitive(least.low, least.high);
   }
   bool done = pn_cover_and_ask(c, least.low, least.high, most.low, most.high, one);
+#if PN_AREA
+  if (done && !one) {
+    int what = pn_visit_covered(least, most, leaf);
+    vec2 a = 0.5 * (a0 + a1), b = 0.5 * (b0 + b1);
+    if (what == PN_STAY && !(leaf && !solid)) pn_hidden_area += pn_area_on_light(a, b);
+    done = what != PN_DOWN;
+  }
+#endif
   return done || leaf ? PN_SKIP : PN_DOWN;
 #else
   // A block without gaps that is itself no larger on the light than what may be moved is looked at no closer: its
@@ -600,8 +647,13 @@ int pn_visit_block(int light, highp sampler2DArray range, pn_ShadedPoint r, pn_S
   vec2 size = half_high - half_low;
   bool leaf = walk.level == 0 || pn_search_turns >= PN_TURNS ||
               bridged && max(size.x, size.y) <= merge * max(dw.y, r.epsilon_w);
-  if (pn_cover_and_ask(c, least.low, least.high, most.low, most.high, false)) return PN_SKIP;
-  if (!leaf && !one) return PN_DOWN;
+  bool covered = pn_cover_and_ask(c, least.low, least.high, most.low, most.high, false);
+#if PN_AREA
+  int what = covered ? pn_visit_covered(least, most, leaf || one) : leaf || one ? PN_STAY : PN_DOWN;
+#else
+  int what = covered ? PN_SKIP : leaf || one ? PN_STAY : PN_DOWN;
+#endif
+  if (what != PN_STAY) return what;
   walk.left = PN_ALL_CORNERS;
   walk.gaps = bridged || walk.level > 0 ? PN_NO_GAP : block.w;
   walk.exact = !one;
@@ -654,11 +706,11 @@ bool pn_take_quad(int light, highp sampler2DArray maps, pn_ShadedPoint r, pn_She
 #if PN_PRIMITIVE == PN_QUAD_EXACT
   if (quad.whole && walk.exact) return true;
 #endif
+  pn_count_primitive(quad.low, quad.high);
 #if PN_OVERLAPS
   if (quad.whole && !walk.exact) pn_spread(quad);
 #endif
   pn_cover_rectangle(c, quad.low, quad.high);
-  pn_search_done.z += 1.0;
   return false;
 }
 #endif
@@ -699,7 +751,9 @@ void pn_descend(int light, highp sampler2DArray maps, highp sampler2DArray range
 #endif
     }
 #endif
+#if !PN_AREA
     if (pn_is_full(c)) break;
+#endif
   }
 }
 #endif
@@ -715,6 +769,9 @@ void pn_search(int light, highp sampler2DArray maps, highp sampler2DArray range,
   pn_search_done.w += float((window.high.x - window.low.x + 1) * (window.high.y - window.low.y + 1));
   if (pn_is_umbra(light, r, map, window)) {
     pn_cover_rectangle(c, vec2(0.0), vec2(1.0));
+#if PN_AREA
+    pn_hidden_area += 1.0;
+#endif
     pn_search_done.x = max(pn_search_done.x, 2.0);
     return;
   }

@@ -35,10 +35,11 @@ static void add_key(const char *vertex, const char *fragment, const char *more, 
 
 static const char *const screen = "shaders/screen.vert.glsl";
 
-static void add_gathering(const char *shader, const char *own, int normals, int mask, int upsample, int debug) {
+static void add_gathering(const char *shader, const char *own, int normals, int mask, int upsample, int area,
+                          int debug) {
   char defines[PNI_TECHNIQUE_DEFINES + 128];
-  snprintf(defines, sizeof defines, "%sPN_NORMALS %d\nPN_MASK %d\nPN_UPSAMPLE %d\nPN_DEBUG %d\n", own, normals, mask,
-           upsample, debug);
+  snprintf(defines, sizeof defines, "%sPN_NORMALS %d\nPN_MASK %d\nPN_UPSAMPLE %d\nPN_AREA %d\nPN_DEBUG %d\n", own,
+           normals, mask, upsample, area, debug);
   add_key(screen, "gather/visibility.glsl", shader, defines);
 }
 
@@ -48,7 +49,9 @@ static void add_variant(const pni_technique_class *c, const char *own, bool full
   for (int i = 0; i < 40; i++) {
     int normals = i % 5, mask = i / 5 & 1, upsample = i / 10 & 1, debug = i / 20;
     if (debug && (upsample || !c->gathering.searches)) continue;
-    if (full || i % 20 == 0) add_gathering(c->gathering.shader, own, normals, mask, upsample, debug);
+    if (full || i % 20 == 0) add_gathering(c->gathering.shader, own, normals, mask, upsample, 0, debug);
+    bool smooths = !strcmp(c->table.name, "bitmask") && !upsample;
+    if (smooths && (full || i % 20 == 0)) add_gathering(c->gathering.shader, own, normals, mask, 0, 1, debug);
   }
   char defines[PNI_TECHNIQUE_DEFINES + 32];
   snprintf(defines, sizeof defines, "PN_LIGHTS %d\n%s", PN_FORWARD_LIGHTS_MAX, own);
@@ -107,6 +110,7 @@ static void add_others(void) {
     snprintf(defines, sizeof defines, "PN_MASK %d\nPN_GIVEN %d\n", i & 1, i >> 1);
     add_key(screen, "receiver/patches.frag.glsl", "", defines);
   }
+  add_key(screen, "gather/smooth.frag.glsl", "", "");
   add_key(screen, "maps/trim.frag.glsl", "", "");
   add_key(screen, "receiver/copy.frag.glsl", "", "");
   add_key(screen, "receiver/planes.frag.glsl", "", "");

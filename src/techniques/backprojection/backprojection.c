@@ -51,7 +51,7 @@ static void defines(const double *values, char *out, size_t size) {
 
 static pn_result draw(const pni_job *job) {
   pni_search_values search = search_values(job->values);
-  pni_search_tell(job, &search);
+  pni_search_tell(job, job->pair_state, &search);
   return pni_gather(job);
 }
 

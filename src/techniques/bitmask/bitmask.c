@@ -3,14 +3,17 @@
 #include "search/parameters.h"
 #include "techniques/technique.h"
 
-enum { PRESET, SAMPLES, PRIMITIVE, MAPS, LAYERS, HIERARCHY, CAP, MERGE, EDGES, FOCUS, COUNT };
+enum { PRESET, SAMPLES, PRIMITIVE, MAPS, LAYERS, HIERARCHY, CAP, MERGE, EDGES, FOCUS, SMOOTH, PASS, COUNT };
 enum { SAMPLES_16J, SAMPLES_8, SAMPLES_16, SAMPLES_32 };
+enum { PASS_BOUNDED, PASS_PAPER };
 enum { MAPS_FRONT, MAPS_TWO_SIDED, MAPS_LAYERS };
 
 static const char *const presets[] = {"fast", "good", "exact", NULL};
 static const char *const samples[] = {"16j", "8", "16", "32", NULL};
 static const char *const primitives[] = {"patch", "quad", "quad-exact", NULL};
 static const char *const maps[] = {"front", "two-sided", "layers", NULL};
+
+static const char *const passes[] = {"bounded", "paper", NULL};
 
 static const pn_parameter parameters[COUNT] = {
     [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/bitmask.md",
@@ -30,6 +33,12 @@ static const pn_parameter parameters[COUNT] = {
     [MERGE] = PNI_PARAMETER_MERGE,
     [EDGES] = PNI_PARAMETER_EDGES,
     [FOCUS] = PNI_PARAMETER_FOCUS,
+    [SMOOTH] = {"smooth", "passes", "passes over the result that smooth its steps, driven by the accumulated area",
+                "section 3.1", PN_INT, 0, 16, 0, NULL},
+    [PASS] = {"pass", "",
+              "of smooth: two thirds of the way, within one surface, by at most half a row of sample points in all; or "
+              "the paper's",
+              "section 3.1; docs/techniques/bitmask.md", PN_CHOICE, 0, 1, PASS_BOUNDED, passes},
 };
 
 static void preset(int choice, double *values) {
@@ -73,10 +82,39 @@ static void defines(const double *values, char *out, size_t size) {
   snprintf(out + length, size - (size_t)length, "PN_SAMPLES %d\n", codes[(int)values[SAMPLES]]);
 }
 
+/* An edge parallel to the light's lies at most half a row of sample points beside where counting them puts it. */
+static pni_smoothing smoothing_of(const double *values) {
+  static const float rows[] = {[SAMPLES_16J] = 16, [SAMPLES_8] = 8, [SAMPLES_16] = 16, [SAMPLES_32] = 32};
+  bool bounded = values[PASS] == PASS_BOUNDED;
+  return (pni_smoothing){.passes = (int)values[SMOOTH],
+                         .way = bounded ? 2 / 3.0F : 1,
+                         .most = bounded ? 0.5F / rows[(int)values[SAMPLES]] : 1,
+                         .within_surfaces = bounded};
+}
+
+/* What it keeps for a pair. */
+typedef struct {
+  pni_search_state search;
+  pni_texture smoothed[2];
+} pair_state;
+
+static void release(pni_gpu *gpu, void *state, bool abandon) {
+  pair_state *s = state;
+  for (int i = 0; i < 2; i++) pni_texture_free(gpu, &s->smoothed[i], abandon);
+}
+
+/* With smooth=1 what is smoothed; past that, what the last pass smooths or the one before it. */
+static const pni_texture *image(const void *state, int index, const char **name) {
+  *name = "smoothed";
+  return index == 0 ? &((const pair_state *)state)->smoothed[0] : NULL;
+}
+
 static pn_result draw(const pni_job *job) {
+  pair_state *state = job->pair_state;
   pni_search_values search = search_values(job->values);
-  pni_search_tell(job, &search);
-  return pni_gather(job);
+  pni_search_tell(job, &state->search, &search);
+  pni_smoothing smoothing = smoothing_of(job->values);
+  return smoothing.passes ? pni_gather_smoothed(job, &smoothing, state->smoothed) : pni_gather(job);
 }
 
 const pni_technique_class pni_technique_bitmask = {
@@ -91,5 +129,5 @@ const pni_technique_class pni_technique_bitmask = {
     .preset = preset,
     .draw = draw,
     .gathering = {.shader = "techniques/bitmask/bitmask.glsl", .defines = defines, .searches = true},
-    .pair_kind = {.bytes = sizeof(pni_search_state)},
+    .pair_kind = {.bytes = sizeof(pair_state), .release = release, .image = image},
 };

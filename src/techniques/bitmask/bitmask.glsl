@@ -50,6 +50,7 @@ bool pn_is_full(pn_Cover c) {
 }
 
 #include "search/search.glsl"
+#include "gather/horizon.glsl"
 
 pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray range, pn_ShadedPoint r) {
   pn_Cover hidden = pn_field_empty();
@@ -68,8 +69,13 @@ pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2D
   for (int map = 0; map < pn_map_count(light); map++)
     for (int layer = 0; layer < pn_map_layers(light, map); layer++) {
       pn_search(light, maps, range, r, map, layer, hidden);
+#if !PN_AREA
       if (pn_is_full(hidden)) return 0.0;
+#endif
     }
+#if PN_AREA
+  pn_seen_area = 1.0 - pn_hidden_area / pn_area_above(pn_extent(light), r.n.xy, r.k);
+#endif
   float below = float(PN_GRID * PN_GRID) - total;
   return 1.0 - (pn_field_count(hidden) - below) / total;
 }
