@@ -122,6 +122,94 @@ static void test_width(void **state) {
   }
 }
 
+/* ---- receivers at several distances ---- */
+
+/* Steps of the ground under the square, each a strip along x. */
+enum { STEPS = 3 };
+static const double step_heights[STEPS] = {0, 0.5, 1};
+
+static void stairs_open(over_ground *c, int size, double half_height) {
+  *c = (over_ground){0};
+  for (int i = 0; i < STEPS; i++)
+    soup_patch(&c->ground, v3(0, step_heights[i], 0.3 * (i - 1)), v3(9, 0, 0), v3(0, 0, 0.15));
+  soup_patch(&c->casters, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
+  over_ground_see(c, &(camera){.width = size,
+                               .height = size,
+                               .eye = v3(0, 10, 0),
+                               .target = v3(0, 0, 0),
+                               .up = v3(0, 0, -1),
+                               .orthographic = true,
+                               .half_height = half_height,
+                               .near = 1,
+                               .far = 20});
+}
+
+static double w_at(bool sun, double height) { return sun ? height : 1 / (L - height); }
+
+typedef struct {
+  bool sun, remap;
+  double width; /* 0: the light's */
+} remap_case;
+
+static const double light_half = 0.3;
+
+/* How far from the edge in the map a receiver at w begins to see the whole light. Remapped, and of the light's width:
+ * A (w_b - w). Remapped, of a fixed width: where alpha is 1 - b / r, b and r counted from w_near under a sun. Else all
+ * of the smoothie: to what the farthest receiver, on the lowest step, sees; or the width itself. */
+static double penumbra_width(const remap_case *c, double w, double w_near) {
+  double w_b = w_at(c->sun, h), w_0 = w_at(c->sun, 0);
+  if (c->width == 0) return light_half * (w_b - (c->remap ? w : w_0));
+  if (!c->remap) return c->width;
+  return c->width * (c->sun ? (w_b - w) / (w_near - w) : 1 - w / w_b);
+}
+
+/* Visibility grows straight over that width. The widths on the steps are also taken from the pixels alone. */
+static void check_remap(const remap_case *c, const char *geometry) {
+  enum { SIZE = 120 };
+  over_ground scene;
+  stairs_open(&scene, SIZE, 1.5);
+  char spec[128];
+  snprintf(spec, sizeof spec, "smoothies:geometry=%s,width=%g%s", geometry, c->width, c->remap ? "" : ",remap=off");
+  pn_light_desc light =
+      c->sun ? sun_along(v3(0, -1, 0), light_half, light_half, 512) : light_over_ground(light_half, light_half, 512);
+  float *visibility = stage_visibility(&scene.s, &light, spec);
+  pn_maps_info info;
+  assert_ok(pn_light_maps(scene.s.light, &info));
+  bool edge_is_nearest = c->sun && c->width > 0; /* b, which counts from that plane, is next to nothing */
+  double worst = 0, distances[STEPS] = {0}, seen[STEPS] = {0}, wide[STEPS];
+  for (int i = 0; i < SIZE * SIZE; i++) {
+    vec p = view_point(&scene.v, i % SIZE, i / SIZE);
+    int step = view_shown(&scene.v, i % SIZE, i / SIZE) / 2;
+    if (fabs(p.z - 0.3 * (step - 1)) > 0.13) continue;
+    double w = w_at(c->sun, p.y), width = penumbra_width(c, w, info.w_near);
+    double d = fabs(p.x) * (c->sun ? 1 : w) - half_square * (c->sun ? 1 : w_at(false, h));
+    if (d < info.texel_s || fabs(d - width) < 2 * info.texel_s) continue;
+    worst = fmax(worst, fabs(visibility[i] - fmin(d / width, 1)));
+    if (visibility[i] == 1) continue;
+    distances[step] += d;
+    seen[step] += visibility[i];
+  }
+  for (int i = 0; i < STEPS; i++) {
+    assert_true(seen[i] > 3);
+    wide[i] = distances[i] / seen[i];
+    double ratio = i ? wide[i] / wide[i - 1] : 1;
+    if (!c->remap) assert_true(fabs(ratio - 1) < 0.01);
+    if (i && c->remap && !edge_is_nearest) assert_true(ratio < 0.9);
+  }
+  print_message("%s, %s: off by %.4f; widths %.4f %.4f %.4f\n", spec, c->sun ? "sun" : "rectangle", worst, wide[0],
+                wide[1], wide[2]);
+  assert_true(worst <= 0.01);
+  free(visibility);
+  over_ground_close(&scene);
+}
+
+/* With remap=off a penumbra is as wide in the map on every receiver; else it widens behind the edge. */
+static void test_remap(void **state) {
+  (void)state;
+  static const char *const geometries[] = {"edges", "cones"};
+  for (int i = 0; i < 16; i++) check_remap(&(remap_case){i & 1, i >> 1 & 1, i & 4 ? 0.1 : 0}, geometries[i >> 3]);
+}
+
 /* ---- contact ---- */
 
 /* Whether a vertical line from the ground at p up to the light's centre passes the box [-e, e] x [0, top] x [-e, e],
@@ -320,8 +408,9 @@ static void test_callbacks(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_square), cmocka_unit_test(test_width),      cmocka_unit_test(test_contact),
-      cmocka_unit_test(test_edge),   cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_callbacks),
+      cmocka_unit_test(test_square),    cmocka_unit_test(test_width), cmocka_unit_test(test_remap),
+      cmocka_unit_test(test_contact),   cmocka_unit_test(test_edge),  cmocka_unit_test(test_bad_meshes),
+      cmocka_unit_test(test_callbacks),
   };
   return GL_RUN("smoothies", tests);
 }

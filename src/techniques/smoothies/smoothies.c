@@ -7,7 +7,7 @@
 #include "gl/host.h"
 #include "silhouettes/silhouettes.h"
 
-enum { PRESET, GEOMETRY, WIDTH, FILTER, COUNT };
+enum { PRESET, GEOMETRY, WIDTH, FILTER, REMAP, COUNT };
 
 static const char *const presets[] = {"fast", "good", "exact", NULL};
 static const char *const geometries[] = {"edges", "cones", NULL};
@@ -22,6 +22,8 @@ static const pn_parameter parameters[COUNT] = {
                "Chan and Durand 2003", PN_FLOAT, 0, 100, 0, width_words},
     [FILTER] = {"filter", "", "looks up 2 x 2 texels and weighs the results", "Chan and Durand 2003", PN_BOOL, 0, 1, 1,
                 NULL},
+    [REMAP] = {"remap", "", "penumbrae widen behind an edge, by alpha / (1 - b / r); off: alpha alone, wide everywhere",
+               "Chan and Durand 2003", PN_BOOL, 0, 1, 1, NULL},
 };
 
 static void preset(int choice, double *values) {
@@ -29,11 +31,17 @@ static void preset(int choice, double *values) {
   values[GEOMETRY] = 1;
   values[WIDTH] = 0;
   values[FILTER] = choice != 0;
+  values[REMAP] = 1;
 }
 
+/* Whether the image is the notes' smoothie buffer: what is seen does not depend on the pixel's own distance. */
+static bool keeps_alpha(const double *values) { return values[REMAP] < 0.5; }
+
 static void want(const double *values, pni_maps_want *out) {
-  *out =
-      (pni_maps_want){.near_layers = 1, .reach = true, .reach_width = values[WIDTH], .variant = (int)values[GEOMETRY]};
+  *out = (pni_maps_want){.near_layers = 1,
+                         .reach = true,
+                         .reach_width = values[WIDTH],
+                         .variant = (int)values[GEOMETRY] + 2 * (int)values[REMAP]};
 }
 
 /* ---- what it keeps for a light ----------------------------------------------------------------------------------- */
@@ -157,26 +165,33 @@ static pn_result make_list(const drawing *d, const pni_mesh_edges *e) {
 
 /* ---- drawing them ------------------------------------------------------------------------------------------------ */
 
-/* Smoothies behind the nearest caster have nothing left to darken. */
+/* Smoothies behind the nearest caster have nothing left to darken. alpha.frag.glsl, which reads the map, sees to that
+ * itself. */
 static pn_result draw_tile(const drawing *d, const pni_mesh_edges *e, int tile) {
   pni_gpu *gpu = d->job->gpu;
   const smoothies *s = d->state;
-  pni_pass pass = {.name = "smoothies",
-                   .program = {"techniques/smoothies/smoothie.vert.glsl", "techniques/smoothies/smoothie.frag.glsl",
-                               NULL, pni_edge_defines},
-                   .color = {pni_image_of(&s->image, 0, tile)},
-                   .depth = pni_image_of(&d->job->maps->depth, 0, tile),
-                   .depth_use = PNI_DEPTH_TEST,
-                   .depth_clamp = true,
-                   .width = s->image.width,
-                   .height = s->image.height,
-                   .blend = PNI_BLEND_MIN};
+  bool alpha = keeps_alpha(d->job->values);
+  pni_pass pass = {
+      .name = "smoothies",
+      .program = {"techniques/smoothies/smoothie.vert.glsl",
+                  alpha ? "techniques/smoothies/alpha.frag.glsl" : "techniques/smoothies/smoothie.frag.glsl", NULL,
+                  pni_edge_defines},
+      .color = {pni_image_of(&s->image, 0, tile)},
+      .depth_clamp = true,
+      .width = s->image.width,
+      .height = s->image.height,
+      .blend = PNI_BLEND_MIN};
+  if (!alpha) {
+    pass.depth = pni_image_of(&d->job->maps->depth, 0, tile);
+    pass.depth_use = PNI_DEPTH_TEST;
+  }
   pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
   pni_silhouettes_set(gpu, e, d->job->frame->projection, d->cut);
   set_mode(d, tile);
   pni_set_texture(gpu, "pn_list", &s->list);
   pni_set_texture(gpu, "pn_total", &s->total);
+  if (alpha) pni_set_texture(gpu, "pn_maps", &d->job->maps->depth);
   pni_draw_counted(gpu, &s->arguments, 0, (int)(12 * e->count));
   return PN_OK;
 }
@@ -203,7 +218,8 @@ static pn_result clear(const pni_job *job, pni_texture *to) {
   static const float nothing[4] = {PNI_EVERYTHING, PNI_EVERYTHING, PNI_EVERYTHING, PNI_EVERYTHING};
   const pni_texture *depth = &job->maps->depth;
   int tiles = job->maps->fit.tiles;
-  pn_result result = pni_texture_shape(job->gpu, to, "smoothies", PNI_RGBA32F, depth->width, depth->height, tiles, 1);
+  pni_format format = keeps_alpha(job->values) ? PNI_RG32F : PNI_RGBA32F;
+  pn_result result = pni_texture_shape(job->gpu, to, "smoothies", format, depth->width, depth->height, tiles, 1);
   for (int tile = 0; tile < tiles && result == PN_OK; tile++) {
     pni_pass pass = {.name = "smoothies cleared",
                      .color = {pni_image_of(to, 0, tile)},
