@@ -60,7 +60,8 @@ static pni_fit_request fit_request(const pn_light *light, const pni_maps_want *w
                            .grid = seen ? seen->grid : NULL,
                            .kept = kept,
                            .reach = want->reach,
-                           .reach_width = want->reach_width};
+                           .reach_width = want->reach_width,
+                           .receivers = want->receivers};
 }
 
 static void fit_light(pn_light *light, const pn_casters *casters, const pni_maps_want *want, const surfaces *seen,
@@ -83,7 +84,7 @@ static pni_map_draw tile_draw(const pn_light *light, pn_casters *casters, const 
                        .w_far = fit->w_far,
                        .range = pni_fit_range(&request)};
   memcpy(draw.bounds, fit->tile[tile], sizeof draw.bounds);
-  if (fit->kept.has_floor) draw.floor = fit->kept.floor;
+  if (fit->kept.has_floor && !want->receivers) draw.floor = fit->kept.floor;
   if (want->focus > 0) draw.later = pni_fit_focus(&request, fit, tile, want->focus);
   return draw;
 }

@@ -42,6 +42,7 @@ typedef struct {
    * that what visible receivers can ask for. */
   bool reach;
   double reach_width;
+  bool receivers; /* maps' depth goes down to all that is seen, where casters may lie that shadow nothing */
 } pni_fit_request;
 
 /* Casters wholly beyond it cast nothing; 0: no limit. A sun has no distance. */

@@ -210,6 +210,144 @@ static void test_remap(void **state) {
   for (int i = 0; i < 16; i++) check_remap(&(remap_case){i & 1, i >> 1 & 1, i & 4 ? 0.1 : 0}, geometries[i >> 3]);
 }
 
+/* ---- whose distance r is ---- */
+
+/* The square over a floor that casts and receives, and beside its shadow a plate that only receives, which the light's
+ * map does not show. tilt: of the light, about z; then the floor is not equally far everywhere. Untilted: something
+ * seen lies deeper than the floor. */
+typedef struct {
+  bool sun, by_map;
+  double tilt, width; /* width 0: the light's */
+} receiver_case;
+
+static const double plate_height = 0.75;
+
+static void plate_open(over_ground *c, const receiver_case *k, int size) {
+  *c = (over_ground){0};
+  soup_patch(&c->casters, v3(0, 0, 0), v3(2, 0, 0), v3(0, 0, 2));
+  soup_patch(&c->casters, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
+  soup_patch(&c->ground, v3(0, 0, 0), v3(2, 0, 0), v3(0, 0, 2));
+  soup_patch(&c->ground, v3(0.85, plate_height, 0), v3(0.25, 0, 0), v3(0, 0, 0.2));
+  if (k->tilt == 0) soup_patch(&c->ground, v3(0, -2, 0), v3(9, 0, 0), v3(0, 0, 9));
+  over_ground_see(c, &(camera){.width = size,
+                               .height = size,
+                               .eye = v3(0, 10, 0),
+                               .target = v3(0, 0, 0),
+                               .up = v3(0, 0, -1),
+                               .orthographic = true,
+                               .half_height = 2.1,
+                               .near = 1,
+                               .far = 20});
+}
+
+/* The map's coordinate across the square's edges that lie along z, and w. */
+static void in_map(const light_axes *l, vec p, double *s, double *w) {
+  vec to = sub(p, l->origin), across = fabs(l->u.x) > fabs(l->v.x) ? l->u : l->v;
+  double z = dot(to, l->z), sign = across.x > 0 ? 1 : -1;
+  *s = sign * dot(to, across) / (l->sun ? 1 : z);
+  *w = l->sun ? -z : 1 / z;
+}
+
+/* What a point at p sees past the nearer edge, by the notes, r being the distance of the point from. NAN inside or
+ * within a margin of where that bends. */
+static double seen_past(const receiver_case *c, const light_axes *l, vec p, vec from, double w_near, double margin) {
+  double s, w, w_r, s_r, d = -INFINITY, w_e = 0;
+  in_map(l, p, &s, &w);
+  in_map(l, from, &s_r, &w_r);
+  for (int side = -1; side <= 1; side += 2) {
+    double s_edge, w_edge;
+    in_map(l, v3(side * half_square, h, 0), &s_edge, &w_edge);
+    if (side * (s - s_edge) < d) continue;
+    d = side * (s - s_edge);
+    w_e = w_edge;
+  }
+  double scale = c->sun ? (w_e - w_r) / (w_near - w_r) : 1 - w_r / w_e;
+  double width = c->width == 0 ? l->half_u * (w_e - w_r) : c->width * scale;
+  return d < margin || fabs(d - width) < 2 * margin ? NAN : fmin(d / width, 1);
+}
+
+static void check_receiver(const receiver_case *c) {
+  enum { SIZE = 280 };
+  over_ground scene;
+  plate_open(&scene, c, SIZE);
+  vec from = c->sun ? v3(0, 0, 0) : v3(L * sin(c->tilt), L * cos(c->tilt), 0);
+  vec along = v3(-sin(c->tilt), -cos(c->tilt), 0);
+  pn_light_desc light =
+      c->sun ? sun_along(along, light_half, light_half, 1024) : light_at(from, along, light_half, light_half, 1024);
+  light_axes l = axes_of(&light);
+  char spec[128];
+  snprintf(spec, sizeof spec, "smoothies:geometry=edges,receiver=%s,width=%g", c->by_map ? "map" : "pixel", c->width);
+  float *visibility = stage_visibility(&scene.s, &light, spec);
+  pn_maps_info info;
+  assert_ok(pn_light_maps(scene.s.light, &info));
+  double worst[2] = {0, 0};
+  int between[2] = {0, 0};
+  for (int i = 0; i < SIZE * SIZE; i++) {
+    vec p = view_point(&scene.v, i % SIZE, i / SIZE), r = p;
+    int shown = view_shown(&scene.v, i % SIZE, i / SIZE) / 2;
+    if (shown > 1 || fabs(p.z) > 0.19 || fabs(p.x) > 1.9) continue;
+    if (shown == 1 && c->by_map) { /* the floor that the light sees there */
+      vec ray = c->sun ? along : sub(p, from);
+      r = add(p, mul(-p.y / ray.y, ray));
+    }
+    double expected = seen_past(c, &l, p, r, info.w_near, info.texel_s);
+    if (isnan(expected) || expected == 1) continue;
+    worst[shown] = fmax(worst[shown], fabs(visibility[i] - expected));
+    between[shown]++;
+  }
+  print_message("%s, %s tilted by %g: off by %.4f on %d pixels of the floor, by %.4f on %d of the plate\n", spec,
+                c->sun ? "sun" : "rectangle", c->tilt, worst[0], between[0], worst[1], between[1]);
+  assert_true(between[0] > 100 && (c->tilt != 0 || between[1] > 20));
+  assert_true(worst[0] <= 0.01 && worst[1] <= 0.01);
+  free(visibility);
+  over_ground_close(&scene);
+}
+
+/* alpha / (1 - b / r): r of the floor behind the smoothie, on what the map does not show too, or of each. */
+static void test_receiver(void **state) {
+  (void)state;
+  for (int i = 0; i < 16; i++) check_receiver(&(receiver_case){i & 1, !(i >> 1 & 1), i & 4 ? 0.4 : 0, i & 8 ? 0.1 : 0});
+}
+
+/* Two squares, of which the lower one sticks out in the map, and something seen between them in height. Least alpha
+ * and nearest distance are kept each for itself, so where the two smoothies overlap it is darkened by the lower
+ * square's too, which lies behind it; the pixel's own distance tells them apart. */
+static void check_overlap(bool off, const char *spec) {
+  enum { SIZE = 200 };
+  const double upper = 2.2, lower = 1, between = 1.6, s_upper = 0.2, s_lower = 0.25, width = 0.1;
+  over_ground scene = {0};
+  soup_patch(&scene.casters, v3(0, upper, 0), v3(s_upper * (L - upper), 0, 0), v3(0, 0, 0.5));
+  soup_patch(&scene.casters, v3(0, lower, 0), v3(s_lower * (L - lower), 0, 0), v3(0, 0, 0.5));
+  soup_patch(&scene.ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
+  soup_patch(&scene.ground, v3(0, between, 0), v3(1, 0, 0), v3(0, 0, 0.3));
+  over_ground_open(&scene, SIZE, 1.1);
+  pn_light_desc light = light_over_ground(0.1, 0.1, 1024);
+  float *visibility = stage_visibility(&scene.s, &light, spec);
+  int behind = 0, before = 0;
+  for (int i = 0; i < SIZE * SIZE; i++) {
+    vec p = view_point(&scene.v, i % SIZE, i / SIZE);
+    double s = fabs(p.x) / (L - p.y), margin = 0.004;
+    if (view_shown(&scene.v, i % SIZE, i / SIZE) < 2 || fabs(p.z) > 0.25) continue;
+    if (s < s_upper + margin || s > s_lower + width - margin) continue;
+    if (fabs(s - s_lower) < margin || fabs(s - s_upper - width) < margin) continue;
+    double alpha = (s - s_upper) / width, w_b = 1 / (L - upper);
+    if (!off) alpha /= 1 - 1 / (L - between) / w_b;
+    if (off && s > s_lower && s < s_upper + width) alpha = fmin(alpha, (s - s_lower) / width);
+    if (fabs(visibility[i] - fmin(alpha, 1)) > 0.01) fail_msg("%s: %g, not %g, at %g", spec, visibility[i], alpha, s);
+    behind += s > s_lower;
+    before += s < s_lower;
+  }
+  assert_true(behind > 100 && before > 50);
+  free(visibility);
+  over_ground_close(&scene);
+}
+
+static void test_overlap(void **state) {
+  (void)state;
+  check_overlap(true, "smoothies:geometry=edges,width=0.1,remap=off");
+  check_overlap(false, "smoothies:geometry=edges,width=0.1");
+}
+
 /* ---- contact ---- */
 
 /* Whether a vertical line from the ground at p up to the light's centre passes the box [-e, e] x [0, top] x [-e, e],
@@ -408,9 +546,9 @@ static void test_callbacks(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_square),    cmocka_unit_test(test_width), cmocka_unit_test(test_remap),
-      cmocka_unit_test(test_contact),   cmocka_unit_test(test_edge),  cmocka_unit_test(test_bad_meshes),
-      cmocka_unit_test(test_callbacks),
+      cmocka_unit_test(test_square),   cmocka_unit_test(test_width),      cmocka_unit_test(test_remap),
+      cmocka_unit_test(test_receiver), cmocka_unit_test(test_overlap),    cmocka_unit_test(test_contact),
+      cmocka_unit_test(test_edge),     cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_callbacks),
   };
   return GL_RUN("smoothies", tests);
 }

@@ -7,10 +7,11 @@
 #include "gl/host.h"
 #include "silhouettes/silhouettes.h"
 
-enum { PRESET, GEOMETRY, WIDTH, FILTER, REMAP, COUNT };
+enum { PRESET, GEOMETRY, WIDTH, FILTER, REMAP, RECEIVER, COUNT };
 
 static const char *const presets[] = {"fast", "good", "exact", NULL};
 static const char *const geometries[] = {"edges", "cones", NULL};
+static const char *const receivers[] = {"map", "pixel", NULL};
 static const char *const width_words[] = {"light", NULL};
 
 static const pn_parameter parameters[COUNT] = {
@@ -24,6 +25,9 @@ static const pn_parameter parameters[COUNT] = {
                 NULL},
     [REMAP] = {"remap", "", "penumbrae widen behind an edge, by alpha / (1 - b / r); off: alpha alone, wide everywhere",
                "Chan and Durand 2003", PN_BOOL, 0, 1, 1, NULL},
+    [RECEIVER] = {"receiver", "",
+                  "whose distance r is: the surface's behind the smoothie in the light's map, or each pixel's",
+                  "Chan and Durand 2003; docs/techniques/smoothies.md", PN_CHOICE, 0, 1, 1, receivers},
 };
 
 static void preset(int choice, double *values) {
@@ -31,17 +35,18 @@ static void preset(int choice, double *values) {
   values[GEOMETRY] = 1;
   values[WIDTH] = 0;
   values[FILTER] = choice != 0;
-  values[REMAP] = 1;
+  values[REMAP] = values[RECEIVER] = 1;
 }
 
 /* Whether the image is the notes' smoothie buffer: what is seen does not depend on the pixel's own distance. */
-static bool keeps_alpha(const double *values) { return values[REMAP] < 0.5; }
+static bool keeps_alpha(const double *values) { return values[REMAP] < 0.5 || values[RECEIVER] < 0.5; }
 
 static void want(const double *values, pni_maps_want *out) {
   *out = (pni_maps_want){.near_layers = 1,
                          .reach = true,
                          .reach_width = values[WIDTH],
-                         .variant = (int)values[GEOMETRY] + 2 * (int)values[REMAP]};
+                         .receivers = values[RECEIVER] < 0.5,
+                         .variant = (int)values[GEOMETRY] + 2 * (int)values[REMAP] + 4 * (int)values[RECEIVER]};
 }
 
 /* ---- what it keeps for a light ----------------------------------------------------------------------------------- */
@@ -103,7 +108,7 @@ static pn_result shape_tables(pni_gpu *gpu, smoothies *s, size_t count) {
 
 static void set_mode(const drawing *d, int tile) {
   const pni_job *job = d->job;
-  pni_set_ints(job->gpu, "pn_mode", tile, job->values[GEOMETRY] > 0.5, 0, 0);
+  pni_set_ints(job->gpu, "pn_mode", tile, job->values[GEOMETRY] > 0.5, job->values[REMAP] > 0.5, 0);
   pni_set_floats(job->gpu, "pn_width", (const float[4]){(float)job->values[WIDTH]});
 }
 

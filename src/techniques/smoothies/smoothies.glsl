@@ -15,7 +15,9 @@ float pn_smoothie(int light, highp sampler2DArray smoothies, int map, ivec2 texe
 }
 
 // Whether smoothies are kept as alpha and distance: see alpha.frag.glsl.
-bool pn_keeps_alpha(int light) { return pn_parameter(light, PN_PARAMETER_REMAP) < 0.5; }
+bool pn_keeps_alpha(int light) {
+  return min(pn_parameter(light, PN_PARAMETER_REMAP), pn_parameter(light, PN_PARAMETER_RECEIVER)) < 0.5;
+}
 
 // What the smoothie buffer says of a receiver that is nowhere nearer than w.
 float pn_alpha(highp sampler2DArray smoothies, int map, ivec2 texel, float w) {
