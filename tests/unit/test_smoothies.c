@@ -348,6 +348,77 @@ static void test_overlap(void **state) {
   check_overlap(false, "smoothies:geometry=edges,width=0.1");
 }
 
+/* ---- a corner of many edges ---- */
+
+/* A cone that lies at height h and points along x, seen from above: the tip is a corner between two of its many edges,
+ * about a quarter and three quarters around from the first, which lies below. Beyond the tip only the corner's own
+ * piece is in the light's way. */
+static const double tip = 0.6, cone_length = 1, cone_radius = 0.4;
+
+static void cone(soup *out, int sides) {
+  vec rim[2] = {{0}};
+  for (int i = 0; i <= sides; i++) {
+    double angle = 2 * M_PI * i / sides;
+    rim[i & 1] = v3(tip - cone_length, h - cone_radius * cos(angle), cone_radius * sin(angle));
+    if (i) soup_triangle(out, v3(tip, h, 0), rim[(i + 1) & 1], rim[i & 1]);
+    if (i) soup_triangle(out, v3(tip - cone_length, h, 0), rim[i & 1], rim[(i + 1) & 1]);
+  }
+}
+
+/* Rounded, of a fixed width: alpha = |o| / width between the normals of the two edges, o counted from the tip in the
+ * map. Of the light's size: a piece of pyramid between its corners (A, A) and (A, -A), where visibility is
+ * o_s / (A (w - w_R)). The edges run along the tangents from the light to the cone, within a facet's angle. */
+static void check_ring(int sides, double width) {
+  enum { SIZE = 200 };
+  over_ground scene = {0};
+  cone(&scene.casters, sides);
+  double w_tip = 1 / (L - h), s_tip = tip * w_tip, w_r = 1 / L;
+  over_ground_see(&scene, &(camera){.width = SIZE,
+                                    .height = SIZE,
+                                    .eye = v3(s_tip * L, 10, 0),
+                                    .target = v3(s_tip * L, 0, 0),
+                                    .up = v3(0, 0, -1),
+                                    .orthographic = true,
+                                    .half_height = 0.4,
+                                    .near = 1,
+                                    .far = 20});
+  pn_light_desc light = light_over_ground(light_half, light_half, 1024);
+  char spec[64];
+  snprintf(spec, sizeof spec, "smoothies:width=%g", width);
+  float *visibility = stage_visibility(&scene.s, &light, spec);
+  pn_maps_info info;
+  assert_ok(pn_light_maps(scene.s.light, &info));
+  /* where the plane through the light's centre and the tip's edge touches the cone: cosine of the angle from above */
+  double touch = (tip / (L - h)) * cone_radius / cone_length, y = h + cone_radius * touch;
+  vec end = v3((tip - cone_length) / (L - y), cone_radius * sqrt(1 - touch * touch) / (L - y), 0);
+  vec along = unit(v3(s_tip - end.x, end.y, 0));
+  double worst = 0;
+  int between = 0;
+  for (int i = 0; i < SIZE * SIZE; i++) {
+    vec p = view_point(&scene.v, i % SIZE, i / SIZE);
+    double s = p.x * w_r - s_tip, t = fabs(p.z) * w_r, margin = info.texel_s + 0.1 * s;
+    double seen = width > 0 ? hypot(s, t) / width / (1 - w_r / w_tip) : s / (light_half * (w_tip - w_r));
+    double inside = width > 0 ? along.x * s - along.y * t : s - t; /* past both edges' ends */
+    if (s < margin || inside < margin || (seen > 0.95 && seen < 1.05)) continue;
+    worst = fmax(worst, fabs(visibility[i] - fmin(seen, 1)));
+    between += seen < 1;
+  }
+  print_message("%s, %d edges at the tip: off by %.4f on %d pixels\n", spec, sides, worst, between);
+  assert_true(between > 100);
+  assert_true(worst <= 0.01);
+  free(visibility);
+  over_ground_close(&scene);
+}
+
+static void test_ring(void **state) {
+  (void)state;
+  static const int sides[] = {12, 300, 20000};
+  for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
+    check_ring(sides[i], 0);
+    check_ring(sides[i], 0.1);
+  }
+}
+
 /* ---- contact ---- */
 
 /* Whether a vertical line from the ground at p up to the light's centre passes the box [-e, e] x [0, top] x [-e, e],
@@ -546,9 +617,10 @@ static void test_callbacks(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_square),   cmocka_unit_test(test_width),      cmocka_unit_test(test_remap),
-      cmocka_unit_test(test_receiver), cmocka_unit_test(test_overlap),    cmocka_unit_test(test_contact),
-      cmocka_unit_test(test_edge),     cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_callbacks),
+      cmocka_unit_test(test_square),    cmocka_unit_test(test_width),   cmocka_unit_test(test_remap),
+      cmocka_unit_test(test_receiver),  cmocka_unit_test(test_overlap), cmocka_unit_test(test_ring),
+      cmocka_unit_test(test_contact),   cmocka_unit_test(test_edge),    cmocka_unit_test(test_bad_meshes),
+      cmocka_unit_test(test_callbacks),
   };
   return GL_RUN("smoothies", tests);
 }
