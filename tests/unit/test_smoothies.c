@@ -419,6 +419,55 @@ static void test_ring(void **state) {
   }
 }
 
+/* ---- to the end ---- */
+
+/* A square turned by the angle at which rectangles reach farthest along u under an oblong light: n_u (A_u n_u + A_v
+ * n_v) is largest where the tangent of twice the angle is A_v / A_u, and (A_u + |A|) / 2 there. Beyond what sheets
+ * reach, the corner's place and A_u, no smoothie is cut off, whatever grid the map is on. */
+static void check_turned(bool sun, pn_fit fit, int map, bool along_v) {
+  enum { SIZE = 200 };
+  const double narrow = 0.1, wide = 0.8, low = sun ? 1.3 : h;
+  double angle = 0.5 * atan2(wide, narrow), a[2] = {along_v ? wide : narrow, along_v ? narrow : wide};
+  if (along_v) angle = 0.5 * M_PI - angle;
+  const vec normals[2] = {v3(cos(angle), 0, sin(angle)), v3(-sin(angle), 0, cos(angle))};
+  over_ground scene = {0};
+  soup_patch(&scene.casters, v3(0, low, 0), mul(half_square, normals[0]), mul(half_square, normals[1]));
+  over_ground_open(&scene, SIZE, 2.6);
+  pn_light_desc light = sun ? sun_along(v3(0, -1, 0), a[0], a[1], map) : light_over_ground(a[0], a[1], map);
+  light.fit = fit;
+  float *visibility = stage_visibility(&scene.s, &light, "smoothies:geometry=edges");
+  pn_maps_info info;
+  assert_ok(pn_light_maps(scene.s.light, &info));
+  double w_b = w_at(sun, low), w_r = w_at(sun, 0), half = half_square * (sun ? 1 : w_b), margin = 2 * info.texel_s;
+  double corner = half * (cos(angle) + sin(angle)), worst = 0, box = corner + narrow * (w_b - w_r);
+  margin = fmax(margin, 2 * info.texel_t);
+  int far = 0;
+  for (int i = 0; i < SIZE * SIZE; i++) {
+    vec o = mul(sun ? 1 : w_r, view_point(&scene.v, i % SIZE, i / SIZE));
+    o.y = 0;
+    for (int side = 0; side < 4; side++) {
+      vec n = normals[side & 1], along = normals[~side & 1];
+      double d = (side & 2 ? -1 : 1) * dot(o, n) - half, end = (a[0] * fabs(n.x) + a[1] * fabs(n.z)) * (w_b - w_r);
+      if (fabs(dot(o, along)) > half - margin || d < margin || d > end - margin) continue;
+      worst = fmax(worst, fabs(visibility[i] - d / end));
+      far += fabs(along_v ? o.z : o.x) > box + margin;
+    }
+  }
+  print_message("%s of %g x %g, fit %d, map of %d: off by %.4f, %d pixels beyond the light's own reach\n",
+                sun ? "sun" : "rectangle", a[0], a[1], (int)fit, map, worst, far);
+  assert_true(far > 50);
+  assert_true(worst <= 0.01);
+  free(visibility);
+  over_ground_close(&scene);
+}
+
+static void test_turned(void **state) {
+  (void)state;
+  static const int maps[] = {512, 560, 608, 664}; /* one of them is hardly larger than what it has to cover */
+  for (int i = 0; i < 16; i++)
+    check_turned(i & 1, i & 2 ? PN_FIT_FRUSTUM : PN_FIT_VISIBLE, maps[i >> 2], (i & 1) == (i >> 1 & 1));
+}
+
 /* ---- contact ---- */
 
 /* Whether a vertical line from the ground at p up to the light's centre passes the box [-e, e] x [0, top] x [-e, e],
@@ -617,10 +666,10 @@ static void test_callbacks(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_square),    cmocka_unit_test(test_width),   cmocka_unit_test(test_remap),
-      cmocka_unit_test(test_receiver),  cmocka_unit_test(test_overlap), cmocka_unit_test(test_ring),
-      cmocka_unit_test(test_contact),   cmocka_unit_test(test_edge),    cmocka_unit_test(test_bad_meshes),
-      cmocka_unit_test(test_callbacks),
+      cmocka_unit_test(test_square),     cmocka_unit_test(test_width),     cmocka_unit_test(test_remap),
+      cmocka_unit_test(test_receiver),   cmocka_unit_test(test_overlap),   cmocka_unit_test(test_ring),
+      cmocka_unit_test(test_turned),     cmocka_unit_test(test_contact),   cmocka_unit_test(test_edge),
+      cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_callbacks),
   };
   return GL_RUN("smoothies", tests);
 }

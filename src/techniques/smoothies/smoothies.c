@@ -45,6 +45,7 @@ static void want(const double *values, pni_maps_want *out) {
   *out = (pni_maps_want){.near_layers = 1,
                          .reach = true,
                          .reach_width = values[WIDTH],
+                         .reach_turned = values[GEOMETRY] < 0.5 && values[WIDTH] == 0,
                          .receivers = values[RECEIVER] < 0.5,
                          .variant = (int)values[GEOMETRY] + 2 * (int)values[REMAP] + 4 * (int)values[RECEIVER]};
 }
