@@ -17,7 +17,7 @@ static const char *const width_words[] = {"light", NULL};
 static const pn_parameter parameters[COUNT] = {
     [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/smoothies.md",
                 PN_CHOICE, 0, 2, 1, presets},
-    [GEOMETRY] = {"geometry", "", "rectangles along edges and rounded kept, or sheets and cones shaped by the light",
+    [GEOMETRY] = {"geometry", "", "rectangles along edges and rounded corners, or sheets and cones shaped by the light",
                   "Chan and Durand 2003; Haines 2001, Wyman and Hansen 2003", PN_CHOICE, 0, 1, 1, geometries},
     [WIDTH] = {"width", "map units", "how far smoothies reach: by the light's real size, or the same everywhere",
                "Chan and Durand 2003", PN_FLOAT, 0, 100, 0, width_words},
