@@ -153,6 +153,12 @@ static pn_result lower_plane(void *user, double plane[3], bool *found) {
   return result;
 }
 
+/* What shadows fall on where the maps show nothing. */
+static pn_result find_ground(const surfaces *seen, view_list *views, pni_fit_result *fit) {
+  fit->has_ground = pni_grid_plane(seen->grid, fit->ground);
+  return fit->has_ground ? lower_plane(views, fit->ground, &fit->has_ground) : PN_OK;
+}
+
 /* A fit to the surfaces, and to what of the casters counts then. */
 static pn_result fit_to_surfaces(pn_light *light, pn_casters *casters, const pni_maps_want *want,
                                  pn_receiver *const *receivers, int count, const surfaces *seen) {
@@ -173,6 +179,7 @@ static pn_result fit_to_surfaces(pn_light *light, pn_casters *casters, const pni
   pn_result result = pni_casters_check(casters, light->groups);
   if (result == PN_OK) result = pni_trim(pni_light_gpu(light), light->trim, &request, &kept);
   if (result == PN_OK) fit_light(light, casters, want, seen, &kept);
+  if (result == PN_OK && want->receivers) result = find_ground(seen, &views, &light->maps.fit);
   return result;
 }
 

@@ -213,10 +213,10 @@ static void test_remap(void **state) {
 /* ---- whose distance r is ---- */
 
 /* The square over a floor that casts and receives, and beside its shadow a plate that only receives, which the light's
- * map does not show. tilt: of the light, about z; then the floor is not equally far everywhere. Untilted: something
- * seen lies deeper than the floor. */
+ * map does not show. bare: the floor does not cast either. tilt: of the light, about z; then the floor is not equally
+ * far everywhere. Untilted: something seen lies deeper than the floor. */
 typedef struct {
-  bool sun, by_map;
+  bool sun, by_map, bare;
   double tilt, width; /* width 0: the light's */
 } receiver_case;
 
@@ -224,7 +224,7 @@ static const double plate_height = 0.75;
 
 static void plate_open(over_ground *c, const receiver_case *k, int size) {
   *c = (over_ground){0};
-  soup_patch(&c->casters, v3(0, 0, 0), v3(2, 0, 0), v3(0, 0, 2));
+  if (!k->bare) soup_patch(&c->casters, v3(0, 0, 0), v3(2, 0, 0), v3(0, 0, 2));
   soup_patch(&c->casters, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
   soup_patch(&c->ground, v3(0, 0, 0), v3(2, 0, 0), v3(0, 0, 2));
   soup_patch(&c->ground, v3(0.85, plate_height, 0), v3(0.25, 0, 0), v3(0, 0, 0.2));
@@ -295,18 +295,22 @@ static void check_receiver(const receiver_case *c) {
     worst[shown] = fmax(worst[shown], fabs(visibility[i] - expected));
     between[shown]++;
   }
-  print_message("%s, %s tilted by %g: off by %.4f on %d pixels of the floor, by %.4f on %d of the plate\n", spec,
-                c->sun ? "sun" : "rectangle", c->tilt, worst[0], between[0], worst[1], between[1]);
+  print_message("%s, %s%s tilted by %g: off by %.4f on %d pixels of the floor, by %.4f on %d of the plate\n", spec,
+                c->bare ? "bare, " : "", c->sun ? "sun" : "rectangle", c->tilt, worst[0], between[0], worst[1],
+                between[1]);
   assert_true(between[0] > 100 && (c->tilt != 0 || between[1] > 20));
   assert_true(worst[0] <= 0.01 && worst[1] <= 0.01);
   free(visibility);
   over_ground_close(&scene);
 }
 
-/* alpha / (1 - b / r): r of the floor behind the smoothie, on what the map does not show too, or of each. */
+/* alpha / (1 - b / r): r of the floor behind the smoothie, on what the map does not show too, or of each. A floor that
+ * does not cast is the plane that most of what is seen lies in. */
 static void test_receiver(void **state) {
   (void)state;
-  for (int i = 0; i < 16; i++) check_receiver(&(receiver_case){i & 1, !(i >> 1 & 1), i & 4 ? 0.4 : 0, i & 8 ? 0.1 : 0});
+  for (int i = 0; i < 16; i++)
+    check_receiver(&(receiver_case){i & 1, !(i >> 1 & 1), false, i & 4 ? 0.4 : 0, i & 8 ? 0.1 : 0});
+  for (int i = 0; i < 4; i++) check_receiver(&(receiver_case){i & 1, true, true, 0.4, i & 2 ? 0.1 : 0});
 }
 
 /* Two squares, of which the lower one sticks out in the map, and something seen between them in height. Least alpha

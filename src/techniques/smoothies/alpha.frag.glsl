@@ -5,6 +5,7 @@
 
 uniform highp ivec4 pn_mode; // tile; _; 1 for remapped alpha
 uniform highp sampler2DArray pn_maps;
+uniform highp vec4 pn_ground; // below all that is seen: w = z + x s + y t; w: 1 where that is known
 layout(location = 0) out vec4 pn_out;
 
 // From 0 at the edge to 1 where the smoothie ends.
@@ -18,11 +19,17 @@ float pn_remapped(float w, float w_r) {
   return pn_kappa() * (pn_width.x > 0.0 ? from : 1.0) / max(w - w_r, PN_TINY);
 }
 
+// The surface that the light sees through the texel. Where none casts there, what receives lies no farther than this.
+float pn_receiver_w(ivec2 texel) {
+  float w = pn_map_fetch(0, pn_maps, pn_mode.x, 0, texel), farthest = pn_lights[0].w_reach;
+  if (!pn_is_nothing(w)) return w;
+  vec2 st = pn_map_st(0, pn_mode.x, vec2(texel) + 0.5);
+  return pn_ground.w > 0.0 ? max(farthest, pn_ground.z + dot(pn_ground.xy, st)) : farthest;
+}
+
 void main() {
-  float w = pn_linear.z;
   // The map is read here, so it cannot be the pass's depth too.
-  float w_r = pn_map_fetch(0, pn_maps, pn_mode.x, 0, ivec2(gl_FragCoord.xy));
+  float w = pn_linear.z, w_r = pn_receiver_w(ivec2(gl_FragCoord.xy));
   if (w_r > w) discard;
-  if (pn_is_nothing(w_r)) w_r = pn_lights[0].w_reach; // the receiver casts nothing; it is not farther than this
   pn_out = vec4(clamp(pn_mode.z != 0 ? pn_remapped(w, w_r) : pn_alpha(w), 0.0, 1.0), -w, 0.0, 0.0);
 }

@@ -171,6 +171,14 @@ static pn_result make_list(const drawing *d, const pni_mesh_edges *e) {
 
 /* ---- drawing them ------------------------------------------------------------------------------------------------ */
 
+/* What alpha is remapped by. */
+static void set_receivers(const pni_job *job) {
+  const pni_fit_result *fit = &job->maps->fit;
+  const double *g = fit->ground;
+  pni_set_texture(job->gpu, "pn_maps", &job->maps->depth);
+  pni_set_floats(job->gpu, "pn_ground", (const float[4]){(float)g[0], (float)g[1], (float)g[2], fit->has_ground});
+}
+
 /* Smoothies behind the nearest caster have nothing left to darken. alpha.frag.glsl, which reads the map, sees to that
  * itself. */
 static pn_result draw_tile(const drawing *d, const pni_mesh_edges *e, int tile) {
@@ -197,7 +205,7 @@ static pn_result draw_tile(const drawing *d, const pni_mesh_edges *e, int tile) 
   set_mode(d, tile);
   pni_set_texture(gpu, "pn_list", &s->list);
   pni_set_texture(gpu, "pn_total", &s->total);
-  if (alpha) pni_set_texture(gpu, "pn_maps", &d->job->maps->depth);
+  if (alpha) set_receivers(d->job);
   pni_draw_counted(gpu, &s->arguments, 0, (int)(12 * e->count));
   return PN_OK;
 }
