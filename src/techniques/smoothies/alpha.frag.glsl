@@ -28,8 +28,14 @@ float pn_receiver_w(ivec2 texel) {
 }
 
 void main() {
-  // The map is read here, so it cannot be the pass's depth too.
-  float w = pn_linear.z, w_r = pn_receiver_w(ivec2(gl_FragCoord.xy));
-  if (w_r > w) discard;
-  pn_out = vec4(clamp(pn_mode.z != 0 ? pn_remapped(w, w_r) : pn_alpha(w), 0.0, 1.0), -w, 0.0, 0.0);
+  float w = pn_linear.z, alpha;
+  if (pn_mode.z != 0) {
+    // The map is read here, so it cannot be the pass's depth too.
+    float w_r = pn_receiver_w(ivec2(gl_FragCoord.xy));
+    if (w_r > w) discard;
+    alpha = pn_remapped(w, w_r);
+  } else {
+    alpha = pn_alpha(w);
+  }
+  pn_out = vec4(clamp(alpha, 0.0, 1.0), -w, 0.0, 0.0);
 }

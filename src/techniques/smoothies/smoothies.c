@@ -179,8 +179,8 @@ static void set_receivers(const pni_job *job) {
   pni_set_floats(job->gpu, "pn_ground", (const float[4]){(float)g[0], (float)g[1], (float)g[2], fit->has_ground});
 }
 
-/* Smoothies behind the nearest caster have nothing left to darken. alpha.frag.glsl, which reads the map, sees to that
- * itself. */
+/* Smoothies behind the nearest caster have nothing left to darken. Where alpha is remapped the shader reads the map and
+ * sees to that itself. */
 static pn_result draw_tile(const drawing *d, const pni_mesh_edges *e, int tile) {
   pni_gpu *gpu = d->job->gpu;
   const smoothies *s = d->state;
@@ -195,7 +195,7 @@ static pn_result draw_tile(const drawing *d, const pni_mesh_edges *e, int tile) 
       .width = s->image.width,
       .height = s->image.height,
       .blend = PNI_BLEND_MIN};
-  if (!alpha) {
+  if (!alpha || d->job->values[REMAP] < 0.5) {
     pass.depth = pni_image_of(&d->job->maps->depth, 0, tile);
     pass.depth_use = PNI_DEPTH_TEST;
   }
@@ -205,7 +205,7 @@ static pn_result draw_tile(const drawing *d, const pni_mesh_edges *e, int tile) 
   set_mode(d, tile);
   pni_set_texture(gpu, "pn_list", &s->list);
   pni_set_texture(gpu, "pn_total", &s->total);
-  if (alpha) set_receivers(d->job);
+  if (alpha && !pass.depth.texture) set_receivers(d->job);
   pni_draw_counted(gpu, &s->arguments, 0, (int)(12 * e->count));
   return PN_OK;
 }
