@@ -20,6 +20,7 @@ struct pn_light {
   pni_kept kept;            /* by the technique */
   uint64_t casters;         /* serial of those of the last update, which may be gone */
   uint32_t groups;
+  pni_emission reaching; /* what a fit takes for the light's extent: see pni_maps_want.reach_turned */
   pni_region visible;
   bool has_visible;
   bool warned_angle;

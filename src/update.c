@@ -11,6 +11,15 @@
 #include "maps/range.h"
 #include "maps/trim.h"
 
+/* Where A_n = A_u |n_u| + A_v |n_v| is laid off along n, it comes to |n_i| A_n along an axis: with an angle a between
+ * the two, A_i cos^2 a + A_j sin a cos a, (A_i + |A|) / 2 at most. */
+static pni_emission reaching(const pni_emission *e, const pni_maps_want *want) {
+  pni_emission out = *e;
+  double diagonal = hypot(e->extent[0], e->extent[1]);
+  for (int i = 0; i < 2 && want->reach_turned; i++) out.extent[i] = 0.5 * (e->extent[i] + diagonal);
+  return out;
+}
+
 /* What PN_FIT_FRUSTUM looks at; for PN_FIT_VISIBLE too it comes first, because it costs nothing and may settle the
  * matter. */
 static pn_result find_frusta(pn_light *light, pn_receiver *const *receivers, int count) {
@@ -38,10 +47,10 @@ static pn_result find_surfaces(pn_light *light, pn_receiver *const *receivers, i
   for (int i = 0; i < count && result == PN_OK; i++) {
     result = pni_receiver_open(receivers[i]);
     if (result != PN_OK) break;
-    result = pni_receiver_patches(receivers[i], &light->frame, &light->emission, &seen->patches);
+    result = pni_receiver_patches(receivers[i], &light->frame, &light->reaching, &seen->patches);
     pni_receiver_close(receivers[i]);
   }
-  if (result == PN_OK) result = pni_grid_make(gpu, &seen->patches, light->emission.extent, &seen->grid);
+  if (result == PN_OK) result = pni_grid_make(gpu, &seen->patches, light->reaching.extent, &seen->grid);
   if (result == PN_OK) light->visible = seen->grid->region;
   return result;
 }
@@ -50,7 +59,7 @@ static pni_fit_request fit_request(const pn_light *light, const pni_maps_want *w
                                    const pni_fit_kept *kept) {
   const pn_light_desc *d = &light->desc;
   return (pni_fit_request){.frame = &light->frame,
-                           .emission = &light->emission,
+                           .emission = &light->reaching,
                            .near_distance = d->near_distance,
                            .range = d->range,
                            .width = d->map_width,
@@ -60,7 +69,8 @@ static pni_fit_request fit_request(const pn_light *light, const pni_maps_want *w
                            .grid = seen ? seen->grid : NULL,
                            .kept = kept,
                            .reach = want->reach,
-                           .reach_width = want->reach_width};
+                           .reach_width = want->reach_width,
+                           .receivers = want->receivers};
 }
 
 static void fit_light(pn_light *light, const pn_casters *casters, const pni_maps_want *want, const surfaces *seen,
@@ -83,7 +93,7 @@ static pni_map_draw tile_draw(const pn_light *light, pn_casters *casters, const 
                        .w_far = fit->w_far,
                        .range = pni_fit_range(&request)};
   memcpy(draw.bounds, fit->tile[tile], sizeof draw.bounds);
-  if (fit->kept.has_floor) draw.floor = fit->kept.floor;
+  if (fit->kept.has_floor && !want->receivers) draw.floor = fit->kept.floor;
   if (want->focus > 0) draw.later = pni_fit_focus(&request, fit, tile, want->focus);
   return draw;
 }
@@ -143,6 +153,12 @@ static pn_result lower_plane(void *user, double plane[3], bool *found) {
   return result;
 }
 
+/* What shadows fall on where the maps show nothing. */
+static pn_result find_ground(const surfaces *seen, view_list *views, pni_fit_result *fit) {
+  fit->has_ground = pni_grid_plane(seen->grid, fit->ground);
+  return fit->has_ground ? lower_plane(views, fit->ground, &fit->has_ground) : PN_OK;
+}
+
 /* A fit to the surfaces, and to what of the casters counts then. */
 static pn_result fit_to_surfaces(pn_light *light, pn_casters *casters, const pni_maps_want *want,
                                  pn_receiver *const *receivers, int count, const surfaces *seen) {
@@ -163,6 +179,7 @@ static pn_result fit_to_surfaces(pn_light *light, pn_casters *casters, const pni
   pn_result result = pni_casters_check(casters, light->groups);
   if (result == PN_OK) result = pni_trim(pni_light_gpu(light), light->trim, &request, &kept);
   if (result == PN_OK) fit_light(light, casters, want, seen, &kept);
+  if (result == PN_OK && want->receivers) result = find_ground(seen, &views, &light->maps.fit);
   return result;
 }
 
@@ -219,6 +236,7 @@ static pn_result update_maps(pn_light *light, pn_casters *casters, uint32_t grou
   last_update last = remember(light);
   pni_maps_want want;
   light->technique->want(light->values, &want);
+  light->reaching = reaching(&light->emission, &want);
   light->groups = groups;
   light->casters = casters->object.serial;
   pni_frame_place(&light->frame, casters, groups);

@@ -59,7 +59,7 @@ static void set_depth(pni_gpu *gpu, const pni_pass *pass) {
   bool on = pass->depth.texture != 0, whole = pass->depth_range[1] <= 0;
   pni_set_depth_test(gpu, on, on && pass->depth_use != PNI_DEPTH_TEST,
                      functions[on ? pass->depth_use : PNI_DEPTH_NONE]);
-  pni_set_depth_clamp(gpu, on && pass->depth_clamp);
+  pni_set_depth_clamp(gpu, pass->depth_clamp); /* primitives are clipped without a depth image too */
   pni_set_depth_range(gpu, whole ? 0 : pass->depth_range[0], whole ? 1 : pass->depth_range[1]);
 }
 

@@ -245,6 +245,12 @@ static double least_receiver(const fitting *f) {
   return fmin(!pni_is_nothing(w) ? w : f->least[2] - behind, f->most[2]);
 }
 
+/* The least w that a map shows of receivers: a rectangle's map has an end, they may have none. */
+static double seen_depth(const fitting *f) {
+  double w = least_receiver(f);
+  return is_parallel(f->request) ? w : fmax(w, 0x1p-20 * f->most[2]);
+}
+
 /* Around the casters by their longest shadow, and of that what visible receivers can ask for. */
 static bool extend_to_reach(fitting *f, pni_fit_result *out) {
   const pni_fit_request *r = f->request;
@@ -317,6 +323,7 @@ void pni_fit_maps(const pn_casters *casters, uint32_t groups, const pni_fit_requ
     out->bounds[i] = f.least[i];
     out->bounds[i + 2] = f.most[i];
   }
+  if (request->receivers && request->visible) f.least[2] = fmin(f.least[2], seen_depth(&f));
   out->clamped = clamp_opening(&f, out);
   for (int i = 0; i < 2; i++) widen_flat(&out->bounds[i], &out->bounds[i + 2], f.most[1 - i] - f.least[1 - i]);
   snap_depth(&f, out);

@@ -24,6 +24,8 @@ typedef struct {
   double w_near, w_far;
   pni_fit_kept kept; /* of the request, cell 0 where it had none */
   double w_reach;    /* with reach: no receiver lies below */
+  bool has_ground;   /* with receivers, where surfaces are looked at: most of them lie in a plane */
+  double ground[3];  /* ... w = [2] + [0] s + [1] t, moved down so that all that is seen lies above */
   int tiles;
   double tile[PNI_TILES_MAX][4]; /* with a border of one texel at least, except for a fit that is given */
 } pni_fit_result;
@@ -42,6 +44,7 @@ typedef struct {
    * that what visible receivers can ask for. */
   bool reach;
   double reach_width;
+  bool receivers; /* maps' depth goes down to all that is seen, where casters may lie that shadow nothing */
 } pni_fit_request;
 
 /* Casters wholly beyond it cast nothing; 0: no limit. A sun has no distance. */

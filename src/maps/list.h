@@ -33,6 +33,8 @@ typedef struct {
   pni_range_kind range;           /* what summarises every layer */
   bool reach;                     /* maps cover what the casters can darken, not only the casters themselves */
   double reach_width;             /* ... that is so far around them, map units; 0: as far as the light's size says */
+  bool reach_turned;              /* ... or as far as that along the normals of edges, more than A on an axis */
+  bool receivers;                 /* casters that shadow nothing seen are drawn too: shadows fall on them */
   int variant;                    /* of what the technique's own update makes beside the maps */
 } pni_maps_want;
 

@@ -165,6 +165,19 @@ static void add_rings(pni_edge_list *list) {
     }
 }
 
+/* Software GL ends a shader's loops after 65535 turns, and drivers give up on a draw that takes too many in all. */
+static uint32_t ring_most(const pni_edge_list *list) {
+  const uint64_t turns_max = (uint64_t)1 << 32;
+  for (uint32_t most = 65535;; most /= 2) {
+    uint64_t turns = 0;
+    for (size_t v = 0; v < list->vertices; v++) {
+      uint64_t count = list->rings[v].count;
+      turns += count * (count < most ? count : most);
+    }
+    if (turns <= turns_max || most < 128) return most;
+  }
+}
+
 static pn_result build_list(pni_gpu *gpu, side *sides, size_t count, size_t vertices, pni_edge_list *out) {
   out->vertices = vertices;
   out->edges = pni_reallocate(gpu, NULL, (count + 1) * sizeof *out->edges);
@@ -173,6 +186,7 @@ static pn_result build_list(pni_gpu *gpu, side *sides, size_t count, size_t vert
   if (!out->edges || !out->entries || !out->rings) return PN_ERROR_OUT_OF_MEMORY;
   add_edges(out, sides, count);
   add_rings(out);
+  out->ring_most = ring_most(out);
   return PN_OK;
 }
 

@@ -7,7 +7,7 @@ uniform highp sampler2D pn_points;   // the vertices in the light's frame
 uniform highp sampler2D pn_sides;    // 0: no silhouette, 1/2 or 1: on which side the mesh lies
 uniform highp usampler2D pn_rings;   // by vertex: where its edges are listed, how many
 uniform highp usampler2D pn_entries; // an edge, its other end
-uniform highp ivec4 pn_mesh;         // edges, 1 for a sun
+uniform highp ivec4 pn_mesh;         // edges; 1 for a sun; how many of a vertex's edges are looked at
 uniform highp vec4 pn_cut;           // rectangle: what lies nearer than this is cut off
 
 ivec2 pn_entry(int i) { return ivec2(i & (PN_EDGE_ROW - 1), i / PN_EDGE_ROW); }

@@ -24,6 +24,9 @@ typedef struct {
   pni_ring *rings; /* one for each vertex; empty ones for those that an equal one stands for */
   pni_ring_entry *entries;
   size_t vertices;
+  /* So many of a vertex's edges may be looked at for each of them: all, but in a mesh that would hold up the GPU with
+   * vertices where too many meet. */
+  uint32_t ring_most;
   /* what was noticed: edges with one face; with three and more; between two faces that are wound against each other;
    * triangles left out: two corners at one place, not finite, or an index out of range */
   size_t open, crowded, opposed, dropped;

@@ -128,6 +128,7 @@ static pn_result find_edges(pni_gpu *gpu, const pni_mesh_data *mesh, pni_edge_li
 static pn_result upload(pni_gpu *gpu, const pni_edge_list *list, pni_mesh_edges *e) {
   e->count = list->count;
   e->vertices = list->vertices;
+  e->ring_most = (int)list->ring_most;
   if (!list->count) return PN_OK;
   int rows = rows_of(list->count, PNI_EDGE_ROW), points = rows_of(list->vertices, PNI_EDGE_ROW);
   pn_result result = table(gpu, &e->edges, "mesh edges", PNI_RGBA32UI, list->edges, list->count);

@@ -12,6 +12,7 @@ extern const char pni_edge_defines[];
 
 typedef struct {
   size_t count, vertices;
+  int ring_most;                     /* of a vertex's edges that are looked at */
   int stride;                        /* floats from position to position */
   pni_texture positions;             /* as in the mesh's buffer */
   pni_texture edges, rings, entries; /* pni_edge, pni_ring, pni_ring_entry */

@@ -47,7 +47,7 @@ pn_result pni_edge_table_begin(pni_gpu *gpu, const char *name, const char *fragm
 }
 
 void pni_silhouettes_set(pni_gpu *gpu, const pni_mesh_edges *e, pni_projection projection, float cut) {
-  pni_set_ints(gpu, "pn_mesh", (int)e->count, projection == PNI_PARALLEL, 0, 0);
+  pni_set_ints(gpu, "pn_mesh", (int)e->count, projection == PNI_PARALLEL, e->ring_most, 0);
   pni_set_floats(gpu, "pn_cut", (const float[4]){cut});
   pni_set_texture(gpu, "pn_edges", &e->edges);
   pni_set_texture(gpu, "pn_points", &e->points);

@@ -1,4 +1,5 @@
 /* The edges of a mesh: against a list made the slow way, and on meshes that are open, crowded, turned about, broken. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -137,8 +138,34 @@ static void test_brute(void **state) {
   }
 }
 
+/* Triangles in a row around their first corner. All of a vertex's edges may be looked at for each of them, as long as
+ * that is no more than 2^32 pairs and 65535 at a time. */
+static void check_fan(size_t triangles) {
+  float *positions = malloc((triangles + 2) * 3 * sizeof *positions);
+  uint32_t *indices = malloc(triangles * 3 * sizeof *indices);
+  for (size_t i = 0; i < triangles + 2; i++) memcpy(positions + 3 * i, (const float[3]){(float)i, i != 0, 0}, 12);
+  for (size_t i = 0; i < triangles; i++)
+    memcpy(indices + 3 * i, (const uint32_t[3]){0, (uint32_t)i + 1, (uint32_t)i + 2}, 12);
+  pni_edge_list list = edges_of(positions, triangles + 2, indices, triangles * 3);
+  assert_int_equal(list.rings[0].count, triangles + 1);
+  double tip = (double)triangles + 1, others = 9.0 * (double)triangles, most = list.ring_most;
+  assert_true(tip * fmin(tip, most) + others <= 0x1p32 && most <= 65535);
+  if (most < 65535) assert_true(tip * (2 * most + 1) + others > 0x1p32);
+  pni_edges_free(&none, &list);
+  free(positions);
+  free(indices);
+}
+
+static void test_fan(void **state) {
+  (void)state;
+  check_fan(300);
+  check_fan(60000);
+  check_fan(200000);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_box), cmocka_unit_test(test_few),
-                                     cmocka_unit_test(test_broken), cmocka_unit_test(test_brute)};
+                                     cmocka_unit_test(test_broken), cmocka_unit_test(test_brute),
+                                     cmocka_unit_test(test_fan)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

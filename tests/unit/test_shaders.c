@@ -149,6 +149,7 @@ static void add_others(void) {
     add_key(screen, path, "", pni_edge_defines);
   }
   add_key("techniques/smoothies/smoothie.vert.glsl", "techniques/smoothies/smoothie.frag.glsl", "", pni_edge_defines);
+  add_key("techniques/smoothies/smoothie.vert.glsl", "techniques/smoothies/alpha.frag.glsl", "", pni_edge_defines);
 }
 
 static void list_programs(void) {

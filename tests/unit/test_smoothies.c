@@ -122,6 +122,356 @@ static void test_width(void **state) {
   }
 }
 
+/* ---- receivers at several distances ---- */
+
+/* Steps of the ground under the square, each a strip along x. */
+enum { STEPS = 3 };
+static const double step_heights[STEPS] = {0, 0.5, 1};
+
+static void stairs_open(over_ground *c, int size, double half_height) {
+  *c = (over_ground){0};
+  for (int i = 0; i < STEPS; i++)
+    soup_patch(&c->ground, v3(0, step_heights[i], 0.3 * (i - 1)), v3(9, 0, 0), v3(0, 0, 0.15));
+  soup_patch(&c->casters, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
+  over_ground_see(c, &(camera){.width = size,
+                               .height = size,
+                               .eye = v3(0, 10, 0),
+                               .target = v3(0, 0, 0),
+                               .up = v3(0, 0, -1),
+                               .orthographic = true,
+                               .half_height = half_height,
+                               .near = 1,
+                               .far = 20});
+}
+
+static double w_at(bool sun, double height) { return sun ? height : 1 / (L - height); }
+
+typedef struct {
+  bool sun, remap;
+  double width; /* 0: the light's */
+} remap_case;
+
+static const double light_half = 0.3;
+
+/* How far from the edge in the map a receiver at w begins to see the whole light. Remapped, and of the light's width:
+ * A (w_b - w). Remapped, of a fixed width: where alpha is 1 - b / r, b and r counted from w_near under a sun. Else all
+ * of the smoothie: to what the farthest receiver, on the lowest step, sees; or the width itself. */
+static double penumbra_width(const remap_case *c, double w, double w_near) {
+  double w_b = w_at(c->sun, h), w_0 = w_at(c->sun, 0);
+  if (c->width == 0) return light_half * (w_b - (c->remap ? w : w_0));
+  if (!c->remap) return c->width;
+  return c->width * (c->sun ? (w_b - w) / (w_near - w) : 1 - w / w_b);
+}
+
+/* Visibility grows straight over that width. The widths on the steps are also taken from the pixels alone. */
+static void check_remap(const remap_case *c, const char *geometry) {
+  enum { SIZE = 120 };
+  over_ground scene;
+  stairs_open(&scene, SIZE, 1.5);
+  char spec[128];
+  snprintf(spec, sizeof spec, "smoothies:geometry=%s,width=%g%s", geometry, c->width, c->remap ? "" : ",remap=off");
+  pn_light_desc light =
+      c->sun ? sun_along(v3(0, -1, 0), light_half, light_half, 512) : light_over_ground(light_half, light_half, 512);
+  float *visibility = stage_visibility(&scene.s, &light, spec);
+  pn_maps_info info;
+  assert_ok(pn_light_maps(scene.s.light, &info));
+  bool edge_is_nearest = c->sun && c->width > 0; /* b, which counts from that plane, is next to nothing */
+  double worst = 0, distances[STEPS] = {0}, seen[STEPS] = {0}, wide[STEPS];
+  for (int i = 0; i < SIZE * SIZE; i++) {
+    vec p = view_point(&scene.v, i % SIZE, i / SIZE);
+    int step = view_shown(&scene.v, i % SIZE, i / SIZE) / 2;
+    if (fabs(p.z - 0.3 * (step - 1)) > 0.13) continue;
+    double w = w_at(c->sun, p.y), width = penumbra_width(c, w, info.w_near);
+    double d = fabs(p.x) * (c->sun ? 1 : w) - half_square * (c->sun ? 1 : w_at(false, h));
+    if (d < info.texel_s || fabs(d - width) < 2 * info.texel_s) continue;
+    worst = fmax(worst, fabs(visibility[i] - fmin(d / width, 1)));
+    if (visibility[i] == 1) continue;
+    distances[step] += d;
+    seen[step] += visibility[i];
+  }
+  for (int i = 0; i < STEPS; i++) {
+    assert_true(seen[i] > 3);
+    wide[i] = distances[i] / seen[i];
+    double ratio = i ? wide[i] / wide[i - 1] : 1;
+    if (!c->remap) assert_true(fabs(ratio - 1) < 0.01);
+    if (i && c->remap && !edge_is_nearest) assert_true(ratio < 0.9);
+  }
+  print_message("%s, %s: off by %.4f; widths %.4f %.4f %.4f\n", spec, c->sun ? "sun" : "rectangle", worst, wide[0],
+                wide[1], wide[2]);
+  assert_true(worst <= 0.01);
+  free(visibility);
+  over_ground_close(&scene);
+}
+
+/* With remap=off a penumbra is as wide in the map on every receiver; else it widens behind the edge. */
+static void test_remap(void **state) {
+  (void)state;
+  static const char *const geometries[] = {"edges", "cones"};
+  for (int i = 0; i < 16; i++) check_remap(&(remap_case){i & 1, i >> 1 & 1, i & 4 ? 0.1 : 0}, geometries[i >> 3]);
+}
+
+/* ---- whose distance r is ---- */
+
+/* The square over a floor that casts and receives, and beside its shadow a plate that only receives, which the light's
+ * map does not show. bare: the floor does not cast either. tilt: of the light, about z; then the floor is not equally
+ * far everywhere. Untilted: something seen lies deeper than the floor. */
+typedef struct {
+  bool sun, by_map, bare;
+  double tilt, width; /* width 0: the light's */
+} receiver_case;
+
+static const double plate_height = 0.75;
+
+static void plate_open(over_ground *c, const receiver_case *k, int size) {
+  *c = (over_ground){0};
+  if (!k->bare) soup_patch(&c->casters, v3(0, 0, 0), v3(2, 0, 0), v3(0, 0, 2));
+  soup_patch(&c->casters, v3(0, h, 0), v3(half_square, 0, 0), v3(0, 0, half_square));
+  soup_patch(&c->ground, v3(0, 0, 0), v3(2, 0, 0), v3(0, 0, 2));
+  soup_patch(&c->ground, v3(0.85, plate_height, 0), v3(0.25, 0, 0), v3(0, 0, 0.2));
+  if (k->tilt == 0) soup_patch(&c->ground, v3(0, -2, 0), v3(9, 0, 0), v3(0, 0, 9));
+  over_ground_see(c, &(camera){.width = size,
+                               .height = size,
+                               .eye = v3(0, 10, 0),
+                               .target = v3(0, 0, 0),
+                               .up = v3(0, 0, -1),
+                               .orthographic = true,
+                               .half_height = 2.1,
+                               .near = 1,
+                               .far = 20});
+}
+
+/* The map's coordinate across the square's edges that lie along z, and w. */
+static void in_map(const light_axes *l, vec p, double *s, double *w) {
+  vec to = sub(p, l->origin), across = fabs(l->u.x) > fabs(l->v.x) ? l->u : l->v;
+  double z = dot(to, l->z), sign = across.x > 0 ? 1 : -1;
+  *s = sign * dot(to, across) / (l->sun ? 1 : z);
+  *w = l->sun ? -z : 1 / z;
+}
+
+/* What a point at p sees past the nearer edge, by the notes, r being the distance of the point from. NAN inside or
+ * within a margin of where that bends. */
+static double seen_past(const receiver_case *c, const light_axes *l, vec p, vec from, double w_near, double margin) {
+  double s, w, w_r, s_r, d = -INFINITY, w_e = 0;
+  in_map(l, p, &s, &w);
+  in_map(l, from, &s_r, &w_r);
+  for (int side = -1; side <= 1; side += 2) {
+    double s_edge, w_edge;
+    in_map(l, v3(side * half_square, h, 0), &s_edge, &w_edge);
+    if (side * (s - s_edge) < d) continue;
+    d = side * (s - s_edge);
+    w_e = w_edge;
+  }
+  double scale = c->sun ? (w_e - w_r) / (w_near - w_r) : 1 - w_r / w_e;
+  double width = c->width == 0 ? l->half_u * (w_e - w_r) : c->width * scale;
+  return d < margin || fabs(d - width) < 2 * margin ? NAN : fmin(d / width, 1);
+}
+
+static void check_receiver(const receiver_case *c) {
+  enum { SIZE = 280 };
+  over_ground scene;
+  plate_open(&scene, c, SIZE);
+  vec from = c->sun ? v3(0, 0, 0) : v3(L * sin(c->tilt), L * cos(c->tilt), 0);
+  vec along = v3(-sin(c->tilt), -cos(c->tilt), 0);
+  pn_light_desc light =
+      c->sun ? sun_along(along, light_half, light_half, 1024) : light_at(from, along, light_half, light_half, 1024);
+  light_axes l = axes_of(&light);
+  char spec[128];
+  snprintf(spec, sizeof spec, "smoothies:geometry=edges,receiver=%s,width=%g", c->by_map ? "map" : "pixel", c->width);
+  float *visibility = stage_visibility(&scene.s, &light, spec);
+  pn_maps_info info;
+  assert_ok(pn_light_maps(scene.s.light, &info));
+  double worst[2] = {0, 0};
+  int between[2] = {0, 0};
+  for (int i = 0; i < SIZE * SIZE; i++) {
+    vec p = view_point(&scene.v, i % SIZE, i / SIZE), r = p;
+    int shown = view_shown(&scene.v, i % SIZE, i / SIZE) / 2;
+    if (shown > 1 || fabs(p.z) > 0.19 || fabs(p.x) > 1.9) continue;
+    if (shown == 1 && c->by_map) { /* the floor that the light sees there */
+      vec ray = c->sun ? along : sub(p, from);
+      r = add(p, mul(-p.y / ray.y, ray));
+    }
+    double expected = seen_past(c, &l, p, r, info.w_near, info.texel_s);
+    if (isnan(expected) || expected == 1) continue;
+    worst[shown] = fmax(worst[shown], fabs(visibility[i] - expected));
+    between[shown]++;
+  }
+  print_message("%s, %s%s tilted by %g: off by %.4f on %d pixels of the floor, by %.4f on %d of the plate\n", spec,
+                c->bare ? "bare, " : "", c->sun ? "sun" : "rectangle", c->tilt, worst[0], between[0], worst[1],
+                between[1]);
+  assert_true(between[0] > 100 && (c->tilt != 0 || between[1] > 20));
+  assert_true(worst[0] <= 0.01 && worst[1] <= 0.01);
+  free(visibility);
+  over_ground_close(&scene);
+}
+
+/* alpha / (1 - b / r): r of the floor behind the smoothie, on what the map does not show too, or of each. A floor that
+ * does not cast is the plane that most of what is seen lies in. */
+static void test_receiver(void **state) {
+  (void)state;
+  for (int i = 0; i < 16; i++)
+    check_receiver(&(receiver_case){i & 1, !(i >> 1 & 1), false, i & 4 ? 0.4 : 0, i & 8 ? 0.1 : 0});
+  for (int i = 0; i < 4; i++) check_receiver(&(receiver_case){i & 1, true, true, 0.4, i & 2 ? 0.1 : 0});
+}
+
+/* Two squares, of which the lower one sticks out in the map, and something seen between them in height. Least alpha
+ * and nearest distance are kept each for itself, so where the two smoothies overlap it is darkened by the lower
+ * square's too, which lies behind it; the pixel's own distance tells them apart. */
+static void check_overlap(bool off, const char *spec) {
+  enum { SIZE = 200 };
+  const double upper = 2.2, lower = 1, between = 1.6, s_upper = 0.2, s_lower = 0.25, width = 0.1;
+  over_ground scene = {0};
+  soup_patch(&scene.casters, v3(0, upper, 0), v3(s_upper * (L - upper), 0, 0), v3(0, 0, 0.5));
+  soup_patch(&scene.casters, v3(0, lower, 0), v3(s_lower * (L - lower), 0, 0), v3(0, 0, 0.5));
+  soup_patch(&scene.ground, v3(0, 0, 0), v3(9, 0, 0), v3(0, 0, 9));
+  soup_patch(&scene.ground, v3(0, between, 0), v3(1, 0, 0), v3(0, 0, 0.3));
+  over_ground_open(&scene, SIZE, 1.1);
+  pn_light_desc light = light_over_ground(0.1, 0.1, 1024);
+  float *visibility = stage_visibility(&scene.s, &light, spec);
+  int behind = 0, before = 0;
+  for (int i = 0; i < SIZE * SIZE; i++) {
+    vec p = view_point(&scene.v, i % SIZE, i / SIZE);
+    double s = fabs(p.x) / (L - p.y), margin = 0.004;
+    if (view_shown(&scene.v, i % SIZE, i / SIZE) < 2 || fabs(p.z) > 0.25) continue;
+    if (s < s_upper + margin || s > s_lower + width - margin) continue;
+    if (fabs(s - s_lower) < margin || fabs(s - s_upper - width) < margin) continue;
+    double alpha = (s - s_upper) / width, w_b = 1 / (L - upper);
+    if (!off) alpha /= 1 - 1 / (L - between) / w_b;
+    if (off && s > s_lower && s < s_upper + width) alpha = fmin(alpha, (s - s_lower) / width);
+    if (fabs(visibility[i] - fmin(alpha, 1)) > 0.01) fail_msg("%s: %g, not %g, at %g", spec, visibility[i], alpha, s);
+    behind += s > s_lower;
+    before += s < s_lower;
+  }
+  assert_true(behind > 100 && before > 50);
+  free(visibility);
+  over_ground_close(&scene);
+}
+
+static void test_overlap(void **state) {
+  (void)state;
+  check_overlap(true, "smoothies:geometry=edges,width=0.1,remap=off");
+  check_overlap(false, "smoothies:geometry=edges,width=0.1");
+}
+
+/* ---- a corner of many edges ---- */
+
+/* A cone that lies at height h and points along x, seen from above: the tip is a corner between two of its many edges,
+ * about a quarter and three quarters around from the first, which lies below. Beyond the tip only the corner's own
+ * piece is in the light's way. */
+static const double tip = 0.6, cone_length = 1, cone_radius = 0.4;
+
+static void cone(soup *out, int sides) {
+  vec rim[2] = {{0}};
+  for (int i = 0; i <= sides; i++) {
+    double angle = 2 * M_PI * i / sides;
+    rim[i & 1] = v3(tip - cone_length, h - cone_radius * cos(angle), cone_radius * sin(angle));
+    if (i) soup_triangle(out, v3(tip, h, 0), rim[(i + 1) & 1], rim[i & 1]);
+    if (i) soup_triangle(out, v3(tip - cone_length, h, 0), rim[i & 1], rim[(i + 1) & 1]);
+  }
+}
+
+/* Rounded, of a fixed width: alpha = |o| / width between the normals of the two edges, o counted from the tip in the
+ * map. Of the light's size: a piece of pyramid between its corners (A, A) and (A, -A), where visibility is
+ * o_s / (A (w - w_R)). The edges run along the tangents from the light to the cone, within a facet's angle. */
+static void check_ring(int sides, double width) {
+  enum { SIZE = 200 };
+  over_ground scene = {0};
+  cone(&scene.casters, sides);
+  double w_tip = 1 / (L - h), s_tip = tip * w_tip, w_r = 1 / L;
+  over_ground_see(&scene, &(camera){.width = SIZE,
+                                    .height = SIZE,
+                                    .eye = v3(s_tip * L, 10, 0),
+                                    .target = v3(s_tip * L, 0, 0),
+                                    .up = v3(0, 0, -1),
+                                    .orthographic = true,
+                                    .half_height = 0.4,
+                                    .near = 1,
+                                    .far = 20});
+  pn_light_desc light = light_over_ground(light_half, light_half, 1024);
+  char spec[64];
+  snprintf(spec, sizeof spec, "smoothies:width=%g", width);
+  float *visibility = stage_visibility(&scene.s, &light, spec);
+  pn_maps_info info;
+  assert_ok(pn_light_maps(scene.s.light, &info));
+  /* where the plane through the light's centre and the tip's edge touches the cone: cosine of the angle from above */
+  double touch = (tip / (L - h)) * cone_radius / cone_length, y = h + cone_radius * touch;
+  vec end = v3((tip - cone_length) / (L - y), cone_radius * sqrt(1 - touch * touch) / (L - y), 0);
+  vec along = unit(v3(s_tip - end.x, end.y, 0));
+  double worst = 0;
+  int between = 0;
+  for (int i = 0; i < SIZE * SIZE; i++) {
+    vec p = view_point(&scene.v, i % SIZE, i / SIZE);
+    double s = p.x * w_r - s_tip, t = fabs(p.z) * w_r, margin = info.texel_s + 0.1 * s;
+    double seen = width > 0 ? hypot(s, t) / width / (1 - w_r / w_tip) : s / (light_half * (w_tip - w_r));
+    double inside = width > 0 ? along.x * s - along.y * t : s - t; /* past both edges' ends */
+    if (s < margin || inside < margin || (seen > 0.95 && seen < 1.05)) continue;
+    worst = fmax(worst, fabs(visibility[i] - fmin(seen, 1)));
+    between += seen < 1;
+  }
+  print_message("%s, %d edges at the tip: off by %.4f on %d pixels\n", spec, sides, worst, between);
+  assert_true(between > 100);
+  assert_true(worst <= 0.01);
+  free(visibility);
+  over_ground_close(&scene);
+}
+
+static void test_ring(void **state) {
+  (void)state;
+  static const int sides[] = {12, 300, 20000};
+  for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
+    check_ring(sides[i], 0);
+    check_ring(sides[i], 0.1);
+  }
+}
+
+/* ---- to the end ---- */
+
+/* A square turned by the angle at which rectangles reach farthest along u under an oblong light: n_u (A_u n_u + A_v
+ * n_v) is largest where the tangent of twice the angle is A_v / A_u, and (A_u + |A|) / 2 there. Beyond what sheets
+ * reach, the corner's place and A_u, no smoothie is cut off, whatever grid the map is on. */
+static void check_turned(bool sun, pn_fit fit, int map, bool along_v) {
+  enum { SIZE = 200 };
+  const double narrow = 0.1, wide = 0.8, low = sun ? 1.3 : h;
+  double angle = 0.5 * atan2(wide, narrow), a[2] = {along_v ? wide : narrow, along_v ? narrow : wide};
+  if (along_v) angle = 0.5 * M_PI - angle;
+  const vec normals[2] = {v3(cos(angle), 0, sin(angle)), v3(-sin(angle), 0, cos(angle))};
+  over_ground scene = {0};
+  soup_patch(&scene.casters, v3(0, low, 0), mul(half_square, normals[0]), mul(half_square, normals[1]));
+  over_ground_open(&scene, SIZE, 2.6);
+  pn_light_desc light = sun ? sun_along(v3(0, -1, 0), a[0], a[1], map) : light_over_ground(a[0], a[1], map);
+  light.fit = fit;
+  float *visibility = stage_visibility(&scene.s, &light, "smoothies:geometry=edges");
+  pn_maps_info info;
+  assert_ok(pn_light_maps(scene.s.light, &info));
+  double w_b = w_at(sun, low), w_r = w_at(sun, 0), half = half_square * (sun ? 1 : w_b), margin = 2 * info.texel_s;
+  double corner = half * (cos(angle) + sin(angle)), worst = 0, box = corner + narrow * (w_b - w_r);
+  margin = fmax(margin, 2 * info.texel_t);
+  int far = 0;
+  for (int i = 0; i < SIZE * SIZE; i++) {
+    vec o = mul(sun ? 1 : w_r, view_point(&scene.v, i % SIZE, i / SIZE));
+    o.y = 0;
+    for (int side = 0; side < 4; side++) {
+      vec n = normals[side & 1], along = normals[~side & 1];
+      double d = (side & 2 ? -1 : 1) * dot(o, n) - half, end = (a[0] * fabs(n.x) + a[1] * fabs(n.z)) * (w_b - w_r);
+      if (fabs(dot(o, along)) > half - margin || d < margin || d > end - margin) continue;
+      worst = fmax(worst, fabs(visibility[i] - d / end));
+      far += fabs(along_v ? o.z : o.x) > box + margin;
+    }
+  }
+  print_message("%s of %g x %g, fit %d, map of %d: off by %.4f, %d pixels beyond the light's own reach\n",
+                sun ? "sun" : "rectangle", a[0], a[1], (int)fit, map, worst, far);
+  assert_true(far > 50);
+  assert_true(worst <= 0.01);
+  free(visibility);
+  over_ground_close(&scene);
+}
+
+static void test_turned(void **state) {
+  (void)state;
+  static const int maps[] = {512, 560, 608, 664}; /* one of them is hardly larger than what it has to cover */
+  for (int i = 0; i < 16; i++)
+    check_turned(i & 1, i & 2 ? PN_FIT_FRUSTUM : PN_FIT_VISIBLE, maps[i >> 2], (i & 1) == (i >> 1 & 1));
+}
+
 /* ---- contact ---- */
 
 /* Whether a vertical line from the ground at p up to the light's centre passes the box [-e, e] x [0, top] x [-e, e],
@@ -320,8 +670,10 @@ static void test_callbacks(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_square), cmocka_unit_test(test_width),      cmocka_unit_test(test_contact),
-      cmocka_unit_test(test_edge),   cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_callbacks),
+      cmocka_unit_test(test_square),     cmocka_unit_test(test_width),     cmocka_unit_test(test_remap),
+      cmocka_unit_test(test_receiver),   cmocka_unit_test(test_overlap),   cmocka_unit_test(test_ring),
+      cmocka_unit_test(test_turned),     cmocka_unit_test(test_contact),   cmocka_unit_test(test_edge),
+      cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_callbacks),
   };
   return GL_RUN("smoothies", tests);
 }

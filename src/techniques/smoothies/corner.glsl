@@ -1,8 +1,6 @@
 // The corners of a silhouette.
 #include "silhouettes/edges.glsl"
 
-#define PN_RING_MAX 64 // edges at a vertex that are looked at
-
 // The angle from along, turning over outward, as a number that grows with it from 0 to 4.
 float pn_turn(vec2 along, vec2 outward, vec2 v) {
   float c = dot(along, v), s = dot(outward, v);
@@ -19,7 +17,7 @@ vec2 pn_next_normal(int self, uint vertex, vec2 along, vec2 outward) {
   uvec2 ring = texelFetch(pn_rings, pn_entry(int(vertex)), 0).xy;
   float best = 4.0;
   vec2 normal = vec2(0.0);
-  for (int i = 0; i < min(int(ring.y), PN_RING_MAX); i++) {
+  for (int i = 0; i < min(int(ring.y), pn_mesh.z); i++) {
     uvec2 entry = texelFetch(pn_entries, pn_entry(int(ring.x) + i), 0).xy;
     int edge = int(entry.x);
     float side = pn_side(edge);

@@ -5,7 +5,7 @@
 #include "maps/maps.glsl"
 #include "silhouettes/edges.glsl"
 
-uniform highp ivec4 pn_mode; // tile, 1 for sheets and cones
+uniform highp ivec4 pn_mode; // tile; 1 for sheets and cones
 uniform highp vec4 pn_width; // fixed width in map units; 0: the light's
 
 bool pn_fixed() { return pn_width.x > 0.0; }

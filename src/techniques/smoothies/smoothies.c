@@ -7,21 +7,27 @@
 #include "gl/host.h"
 #include "silhouettes/silhouettes.h"
 
-enum { PRESET, GEOMETRY, WIDTH, FILTER, COUNT };
+enum { PRESET, GEOMETRY, WIDTH, FILTER, REMAP, RECEIVER, COUNT };
 
 static const char *const presets[] = {"fast", "good", "exact", NULL};
 static const char *const geometries[] = {"edges", "cones", NULL};
+static const char *const receivers[] = {"map", "pixel", NULL};
 static const char *const width_words[] = {"light", NULL};
 
 static const pn_parameter parameters[COUNT] = {
     [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/smoothies.md",
                 PN_CHOICE, 0, 2, 1, presets},
-    [GEOMETRY] = {"geometry", "", "rectangles along edges and rounded kept, or sheets and cones shaped by the light",
+    [GEOMETRY] = {"geometry", "", "rectangles along edges and rounded corners, or sheets and cones shaped by the light",
                   "Chan and Durand 2003; Haines 2001, Wyman and Hansen 2003", PN_CHOICE, 0, 1, 1, geometries},
     [WIDTH] = {"width", "map units", "how far smoothies reach: by the light's real size, or the same everywhere",
                "Chan and Durand 2003", PN_FLOAT, 0, 100, 0, width_words},
     [FILTER] = {"filter", "", "looks up 2 x 2 texels and weighs the results", "Chan and Durand 2003", PN_BOOL, 0, 1, 1,
                 NULL},
+    [REMAP] = {"remap", "", "penumbrae widen behind an edge, by alpha / (1 - b / r); off: alpha alone, wide everywhere",
+               "Chan and Durand 2003", PN_BOOL, 0, 1, 1, NULL},
+    [RECEIVER] = {"receiver", "",
+                  "whose distance r is: the surface's behind the smoothie in the light's map, or each pixel's",
+                  "Chan and Durand 2003; docs/techniques/smoothies.md", PN_CHOICE, 0, 1, 1, receivers},
 };
 
 static void preset(int choice, double *values) {
@@ -29,11 +35,19 @@ static void preset(int choice, double *values) {
   values[GEOMETRY] = 1;
   values[WIDTH] = 0;
   values[FILTER] = choice != 0;
+  values[REMAP] = values[RECEIVER] = 1;
 }
 
+/* Whether the image is the notes' smoothie buffer: what is seen does not depend on the pixel's own distance. */
+static bool keeps_alpha(const double *values) { return values[REMAP] < 0.5 || values[RECEIVER] < 0.5; }
+
 static void want(const double *values, pni_maps_want *out) {
-  *out =
-      (pni_maps_want){.near_layers = 1, .reach = true, .reach_width = values[WIDTH], .variant = (int)values[GEOMETRY]};
+  *out = (pni_maps_want){.near_layers = 1,
+                         .reach = true,
+                         .reach_width = values[WIDTH],
+                         .reach_turned = values[GEOMETRY] < 0.5 && values[WIDTH] == 0,
+                         .receivers = values[RECEIVER] < 0.5,
+                         .variant = (int)values[GEOMETRY] + 2 * (int)values[REMAP] + 4 * (int)values[RECEIVER]};
 }
 
 /* ---- what it keeps for a light ----------------------------------------------------------------------------------- */
@@ -95,7 +109,7 @@ static pn_result shape_tables(pni_gpu *gpu, smoothies *s, size_t count) {
 
 static void set_mode(const drawing *d, int tile) {
   const pni_job *job = d->job;
-  pni_set_ints(job->gpu, "pn_mode", tile, job->values[GEOMETRY] > 0.5, 0, 0);
+  pni_set_ints(job->gpu, "pn_mode", tile, job->values[GEOMETRY] > 0.5, job->values[REMAP] > 0.5, 0);
   pni_set_floats(job->gpu, "pn_width", (const float[4]){(float)job->values[WIDTH]});
 }
 
@@ -157,26 +171,41 @@ static pn_result make_list(const drawing *d, const pni_mesh_edges *e) {
 
 /* ---- drawing them ------------------------------------------------------------------------------------------------ */
 
-/* Smoothies behind the nearest caster have nothing left to darken. */
+/* What alpha is remapped by. */
+static void set_receivers(const pni_job *job) {
+  const pni_fit_result *fit = &job->maps->fit;
+  const double *g = fit->ground;
+  pni_set_texture(job->gpu, "pn_maps", &job->maps->depth);
+  pni_set_floats(job->gpu, "pn_ground", (const float[4]){(float)g[0], (float)g[1], (float)g[2], fit->has_ground});
+}
+
+/* Smoothies behind the nearest caster have nothing left to darken. Where alpha is remapped the shader reads the map and
+ * sees to that itself. */
 static pn_result draw_tile(const drawing *d, const pni_mesh_edges *e, int tile) {
   pni_gpu *gpu = d->job->gpu;
   const smoothies *s = d->state;
-  pni_pass pass = {.name = "smoothies",
-                   .program = {"techniques/smoothies/smoothie.vert.glsl", "techniques/smoothies/smoothie.frag.glsl",
-                               NULL, pni_edge_defines},
-                   .color = {pni_image_of(&s->image, 0, tile)},
-                   .depth = pni_image_of(&d->job->maps->depth, 0, tile),
-                   .depth_use = PNI_DEPTH_TEST,
-                   .depth_clamp = true,
-                   .width = s->image.width,
-                   .height = s->image.height,
-                   .blend = PNI_BLEND_MIN};
+  bool alpha = keeps_alpha(d->job->values);
+  pni_pass pass = {
+      .name = "smoothies",
+      .program = {"techniques/smoothies/smoothie.vert.glsl",
+                  alpha ? "techniques/smoothies/alpha.frag.glsl" : "techniques/smoothies/smoothie.frag.glsl", NULL,
+                  pni_edge_defines},
+      .color = {pni_image_of(&s->image, 0, tile)},
+      .depth_clamp = true,
+      .width = s->image.width,
+      .height = s->image.height,
+      .blend = PNI_BLEND_MIN};
+  if (!alpha || d->job->values[REMAP] < 0.5) {
+    pass.depth = pni_image_of(&d->job->maps->depth, 0, tile);
+    pass.depth_use = PNI_DEPTH_TEST;
+  }
   pn_result result = pni_pass_begin(gpu, &pass);
   if (result != PN_OK) return result;
   pni_silhouettes_set(gpu, e, d->job->frame->projection, d->cut);
   set_mode(d, tile);
   pni_set_texture(gpu, "pn_list", &s->list);
   pni_set_texture(gpu, "pn_total", &s->total);
+  if (alpha && !pass.depth.texture) set_receivers(d->job);
   pni_draw_counted(gpu, &s->arguments, 0, (int)(12 * e->count));
   return PN_OK;
 }
@@ -203,7 +232,8 @@ static pn_result clear(const pni_job *job, pni_texture *to) {
   static const float nothing[4] = {PNI_EVERYTHING, PNI_EVERYTHING, PNI_EVERYTHING, PNI_EVERYTHING};
   const pni_texture *depth = &job->maps->depth;
   int tiles = job->maps->fit.tiles;
-  pn_result result = pni_texture_shape(job->gpu, to, "smoothies", PNI_RGBA32F, depth->width, depth->height, tiles, 1);
+  pni_format format = keeps_alpha(job->values) ? PNI_RG32F : PNI_RGBA32F;
+  pn_result result = pni_texture_shape(job->gpu, to, "smoothies", format, depth->width, depth->height, tiles, 1);
   for (int tile = 0; tile < tiles && result == PN_OK; tile++) {
     pni_pass pass = {.name = "smoothies cleared",
                      .color = {pni_image_of(to, 0, tile)},

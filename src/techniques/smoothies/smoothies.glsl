@@ -14,6 +14,17 @@ float pn_smoothie(int light, highp sampler2DArray smoothies, int map, ivec2 texe
   return reciprocal > 0.0 ? 1.0 / reciprocal : PN_EVERYTHING;
 }
 
+// Whether smoothies are kept as alpha and distance: see alpha.frag.glsl.
+bool pn_keeps_alpha(int light) {
+  return min(pn_parameter(light, PN_PARAMETER_REMAP), pn_parameter(light, PN_PARAMETER_RECEIVER)) < 0.5;
+}
+
+// What the smoothie buffer says of a receiver that is nowhere nearer than w.
+float pn_alpha(highp sampler2DArray smoothies, int map, ivec2 texel, float w) {
+  vec2 stored = texelFetch(smoothies, ivec3(texel, map), 0).rg;
+  return w < -stored.y ? stored.x : PN_EVERYTHING;
+}
+
 // The receiver's tangent plane around it in the map: w there is plane.z + plane.xy . (st - st_R), nearer to the light
 // by the errors that it may have within a texel.
 vec3 pn_plane(int light, pn_ShadedPoint r) {
@@ -35,8 +46,10 @@ float pn_texel_sees(int light, highp sampler2DArray maps, highp sampler2DArray s
   if (!pn_map_inside(light, map, texel)) return 1.0;
   vec3 q = pn_texel_point(light, maps, map, texel);
   float w = plane.z + dot(plane.xy, q.xy - r.m.xy);
-  float sees = min(pn_smoothie(light, smoothies, map, texel, w) * share, 1.0);
-  return pn_blocks_apart(light, r, q) ? 0.0 : sees;
+  // Smoothies at a distance of their own must not lie before the edge of the receiver's surface that they grow from.
+  float sees = pn_keeps_alpha(light) ? pn_alpha(smoothies, map, texel, max(w, plane.z))
+                                     : pn_smoothie(light, smoothies, map, texel, w) * share;
+  return pn_blocks_apart(light, r, q) ? 0.0 : min(sees, 1.0);
 }
 
 pn_Visibility pn_technique(int light, highp sampler2DArray maps, highp sampler2DArray smoothies, pn_ShadedPoint r) {
