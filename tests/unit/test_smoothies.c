@@ -489,11 +489,13 @@ static bool box_hides(vec p, vec light, double e, double top, double margin) {
 }
 
 /* A box that stands on the ground: the shadow of the light's centre is dark right up to it, whatever the light's
- * size. */
+ * size, and its top is lit right up to the edges that smoothies grow from. */
 static void test_contact(void **state) {
   (void)state;
   enum { SIZE = 128 };
   static const double sizes[] = {0.02, 0.2, 1, 2};
+  static const char *const specs[] = {"smoothies", "smoothies:geometry=edges", "smoothies:receiver=map",
+                                      "smoothies:geometry=edges,width=0.05,receiver=map", "smoothies:remap=off"};
   const double e = 0.5, top = 0.8;
   soup surfaces = {0}, box = {0};
   soup_box(&surfaces, v3(-e, 0, -e), v3(e, top, e));
@@ -512,25 +514,29 @@ static void test_contact(void **state) {
   view_draw(&v, &k, &surfaces);
   vec centre = v3(-2.1, 3, 0.4);
   for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
-    for (int geometry = 0; geometry < 2; geometry++) {
+    for (size_t j = 0; j < sizeof specs / sizeof *specs; j++) {
       stage s;
       stage_open(&s);
       stage_cast(&s, &box);
       stage_receive(&s, &v, true);
       pn_light_desc light = light_at(centre, mul(-1, centre), sizes[i], sizes[i], 512);
       light.fit = PN_FIT_VISIBLE;
-      float *visibility = stage_visibility(&s, &light, geometry ? "smoothies:geometry=edges" : "smoothies");
+      float *visibility = stage_visibility(&s, &light, specs[j]);
       double texel = 3 * texel_of(&s, true) * length(centre);
-      int dark = 0, close = 0;
+      int dark = 0, close = 0, lit = 0;
       for (int p = 0; p < SIZE * SIZE; p++) {
-        if (v.shown[p] < box_triangles) continue;
         vec at = view_point(&v, p % SIZE, p / SIZE);
+        if (fabs(at.y - top) < 1e-6) {
+          if (visibility[p] != 1) fail_msg("%s, light %g: %g on the box", specs[j], sizes[i], visibility[p]);
+          lit++;
+        }
+        if (v.shown[p] < box_triangles) continue;
         if (!box_hides(at, centre, e, top, texel)) continue;
-        if (visibility[p] != 0) fail_msg("light %g: %g at %g, %g", sizes[i], visibility[p], at.x, at.z);
+        if (visibility[p] != 0) fail_msg("%s, light %g: %g at %g, %g", specs[j], sizes[i], visibility[p], at.x, at.z);
         dark++;
         close += at.x < e + 3 * texel;
       }
-      assert_true(dark > 500 && close > 20);
+      assert_true(dark > 500 && close > 20 && lit > 500);
       free(visibility);
       stage_close(&s);
     }

@@ -25,6 +25,15 @@ float pn_alpha(highp sampler2DArray smoothies, int map, ivec2 texel, float w) {
   return w < -stored.y ? stored.x : PN_EVERYTHING;
 }
 
+// How far from the receiver, at most, an edge of its own surface lies whose smoothie covers a texel beside it: the
+// texel, and from there back to the edge along the normal, or along a sheet. A sheet goes by A_u and A_v on the axes
+// where it goes by A_n, the lesser one at least, along the normal.
+vec2 pn_edge_distance(int light) {
+  vec2 texel = pn_texel_size(light), extent = pn_extent(light);
+  bool sheets = pn_parameter(light, PN_PARAMETER_GEOMETRY) > 0.5 && pn_parameter(light, PN_PARAMETER_WIDTH) == 0.0;
+  return texel + length(texel) * (sheets ? extent / max(min(extent.x, extent.y), PN_TINY) : vec2(1.0));
+}
+
 // The receiver's tangent plane around it in the map: w there is plane.z + plane.xy . (st - st_R), nearer to the light
 // by the errors that it may have within a texel.
 vec3 pn_plane(int light, pn_ShadedPoint r) {
@@ -46,8 +55,9 @@ float pn_texel_sees(int light, highp sampler2DArray maps, highp sampler2DArray s
   if (!pn_map_inside(light, map, texel)) return 1.0;
   vec3 q = pn_texel_point(light, maps, map, texel);
   float w = plane.z + dot(plane.xy, q.xy - r.m.xy);
-  // Smoothies at a distance of their own must not lie before the edge of the receiver's surface that they grow from.
-  float sees = pn_keeps_alpha(light) ? pn_alpha(smoothies, map, texel, max(w, plane.z))
+  // Smoothies are as near as their edge, which may be the receiver's own.
+  float nearest = plane.z + dot(abs(plane.xy), pn_edge_distance(light));
+  float sees = pn_keeps_alpha(light) ? pn_alpha(smoothies, map, texel, nearest)
                                      : pn_smoothie(light, smoothies, map, texel, w) * share;
   return pn_blocks_apart(light, r, q) ? 0.0 : min(sees, 1.0);
 }
