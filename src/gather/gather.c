@@ -121,7 +121,8 @@ static pn_result smooth_once(const pni_job *job, const pni_smoothing *smoothing,
   pn_result result = pni_pass_begin(job->gpu, &pass);
   if (result != PN_OK) return result;
   pni_set_texture(job->gpu, "pn_from", from);
-  pni_set_floats(job->gpu, "pn_bounds", (const float[4]){smoothing->way, smoothing->most, smoothing->within_surfaces});
+  pni_set_floats(job->gpu, "pn_bounds",
+                 (const float[4]){smoothing->way, smoothing->most, smoothing->steepest, smoothing->within_surfaces});
   pni_draw_screen(job->gpu);
   return PN_OK;
 }

@@ -23,9 +23,10 @@ pn_result pni_gather(const pni_job *job);
 
 /* The post-filter (Bitmask Soft Shadows, section 3.1). */
 typedef struct {
-  int passes; /* at least one */
-  float way;  /* that a pass goes of it: at less than 1 every other pixel cannot drift from the ones between */
-  float most; /* that all of them together may change visibility by */
+  int passes;     /* at least one */
+  float way;      /* that a pass goes of it: at less than 1 every other pixel cannot drift from the ones between */
+  float most;     /* that all of them together may change visibility by */
+  float steepest; /* that visibility may change by between a pixel's neighbours: past that nothing is done */
   bool within_surfaces; /* between pixels of one surface only */
 } pni_smoothing;
 /* As pni_gather, for a technique whose shader knows PN_AREA: its visibility smoothed by what its accumulated area does.

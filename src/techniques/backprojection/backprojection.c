@@ -3,16 +3,16 @@
 
 enum { PRESET, PRIMITIVE, GAPS, LAYERS, HIERARCHY, CAP, MERGE, EDGES, FOCUS, COUNT };
 
-static const char *const presets[] = {"fast", "good", "exact", NULL};
+static const char *const presets[] = {"fast", "good", "exact", "paper", NULL};
 static const char *const primitives[] = {"patch", "quad", NULL};
 
 static const pn_parameter parameters[COUNT] = {
     [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it",
-                "docs/techniques/backprojection.md", PN_CHOICE, 0, 2, 1, presets},
+                "docs/techniques/backprojection.md", PN_CHOICE, 0, 3, 1, presets},
     [PRIMITIVE] = {"primitive", "", "what texels stand for: rectangles, or quads between texel centres",
-                   "Bitmask Soft Shadows, section 4", PN_CHOICE, 0, 1, PNI_PRIMITIVE_PATCH, primitives},
-    [GAPS] = {"gaps", "", "patches are widened to meet their left and lower neighbours", "Guennebaud et al. 2006",
-              PN_BOOL, 0, 1, 1, NULL},
+                   "Bitmask Soft Shadows, section 4", PN_CHOICE, 0, 1, PNI_PRIMITIVE_QUAD, primitives},
+    [GAPS] = {"gaps", "", "patches are widened to meet their left and lower neighbours, with merge=0",
+              "Guennebaud et al. 2006", PN_BOOL, 0, 1, 1, NULL},
     [LAYERS] = {"layers", "", "peeled layers, merged by maximum", "Bitmask Soft Shadows, Fig. 9d", PN_INT, 1,
                 PNI_LAYERS_MAX, 1, NULL},
     [HIERARCHY] = PNI_PARAMETER_HIERARCHY("Bitmask Soft Shadows, section 5"),
@@ -25,8 +25,15 @@ static const pn_parameter parameters[COUNT] = {
 static void preset(int choice, double *values) {
   for (int i = 0; i < COUNT; i++) values[i] = parameters[i].initial;
   values[PRESET] = choice;
+  if (choice == 0 || choice == 3) values[PRIMITIVE] = PNI_PRIMITIVE_PATCH;
   if (choice == 0) values[MERGE] = 2;    /* fast */
   if (choice == 2) values[MERGE] = 0.25; /* exact */
+  if (choice == 3) {                     /* paper */
+    values[HIERARCHY] = PNI_HIERARCHY_HSM;
+    values[MERGE] = 0;
+    values[CAP] = 18; /* Bitmask Soft Shadows, Table 3 */
+    values[EDGES] = 0;
+  }
 }
 
 static pni_search_values search_values(const double *values) {

@@ -8,7 +8,7 @@ enum { SAMPLES_16J, SAMPLES_8, SAMPLES_16, SAMPLES_32 };
 enum { PASS_BOUNDED, PASS_PAPER };
 enum { MAPS_FRONT, MAPS_TWO_SIDED, MAPS_LAYERS };
 
-static const char *const presets[] = {"fast", "good", "exact", NULL};
+static const char *const presets[] = {"fast", "good", "exact", "paper", NULL};
 static const char *const samples[] = {"16j", "8", "16", "32", NULL};
 static const char *const primitives[] = {"patch", "quad", "quad-exact", NULL};
 static const char *const maps[] = {"front", "two-sided", "layers", NULL};
@@ -17,7 +17,7 @@ static const char *const passes[] = {"bounded", "paper", NULL};
 
 static const pn_parameter parameters[COUNT] = {
     [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/bitmask.md",
-                PN_CHOICE, 0, 2, 1, presets},
+                PN_CHOICE, 0, 3, 1, presets},
     [SAMPLES] = {"samples", "", "points on the light: N x N, or 16 x 16 jittered", "section 3, Fig. 3", PN_CHOICE, 0, 3,
                  SAMPLES_16J, samples},
     [PRIMITIVE] = {"primitive", "",
@@ -36,8 +36,8 @@ static const pn_parameter parameters[COUNT] = {
     [SMOOTH] = {"smooth", "passes", "passes over the result that smooth its steps, driven by the accumulated area",
                 "section 3.1", PN_INT, 0, 16, 0, NULL},
     [PASS] = {"pass", "",
-              "of smooth: two thirds of the way, within one surface, by at most half a row of sample points in all; or "
-              "the paper's",
+              "of smooth: where visibility changes slowly, within one surface, by at most half a row of sample points; "
+              "or the paper's",
               "section 3.1; docs/techniques/bitmask.md", PN_CHOICE, 0, 1, PASS_BOUNDED, passes},
 };
 
@@ -54,6 +54,14 @@ static void preset(int choice, double *values) {
     values[MAPS] = MAPS_LAYERS;
     values[LAYERS] = 10;
     values[MERGE] = 0.5;
+  }
+  if (choice == 3) { /* paper */
+    values[MAPS] = MAPS_FRONT;
+    values[MERGE] = 0;
+    values[CAP] = 18; /* its Table 3 */
+    values[EDGES] = 0;
+    values[SMOOTH] = 5; /* its Fig. 3 */
+    values[PASS] = PASS_PAPER;
   }
 }
 
@@ -82,14 +90,14 @@ static void defines(const double *values, char *out, size_t size) {
   snprintf(out + length, size - (size_t)length, "PN_SAMPLES %d\n", codes[(int)values[SAMPLES]]);
 }
 
-/* An edge parallel to the light's lies at most half a row of sample points beside where counting them puts it. */
+/* An edge parallel to the light's lies at most half a row of sample points beside where counting them puts it. Where
+ * visibility goes by more than a row from a pixel to the next but one, no steps of it could be seen. */
 static pni_smoothing smoothing_of(const double *values) {
-  static const float rows[] = {[SAMPLES_16J] = 16, [SAMPLES_8] = 8, [SAMPLES_16] = 16, [SAMPLES_32] = 32};
-  bool bounded = values[PASS] == PASS_BOUNDED;
-  return (pni_smoothing){.passes = (int)values[SMOOTH],
-                         .way = bounded ? 2 / 3.0F : 1,
-                         .most = bounded ? 0.5F / rows[(int)values[SAMPLES]] : 1,
-                         .within_surfaces = bounded};
+  static const float counts[] = {[SAMPLES_16J] = 16, [SAMPLES_8] = 8, [SAMPLES_16] = 16, [SAMPLES_32] = 32};
+  float row = 1 / counts[(int)values[SAMPLES]];
+  pni_smoothing bounded = {(int)values[SMOOTH], .way = 2 / 3.0F, .most = row / 2, .steepest = row, true};
+  pni_smoothing paper = {(int)values[SMOOTH], .way = 1, .most = 1, .steepest = 1};
+  return values[PASS] == PASS_PAPER ? paper : bounded;
 }
 
 /* What it keeps for a pair. */

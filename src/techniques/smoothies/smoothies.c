@@ -9,14 +9,14 @@
 
 enum { PRESET, GEOMETRY, WIDTH, FILTER, REMAP, RECEIVER, COUNT };
 
-static const char *const presets[] = {"fast", "good", "exact", NULL};
+static const char *const presets[] = {"fast", "good", "exact", "paper", NULL};
 static const char *const geometries[] = {"edges", "cones", NULL};
 static const char *const receivers[] = {"map", "pixel", NULL};
 static const char *const width_words[] = {"light", NULL};
 
 static const pn_parameter parameters[COUNT] = {
     [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/smoothies.md",
-                PN_CHOICE, 0, 2, 1, presets},
+                PN_CHOICE, 0, 3, 1, presets},
     [GEOMETRY] = {"geometry", "", "rectangles along edges and rounded corners, or sheets and cones shaped by the light",
                   "Chan and Durand 2003; Haines 2001, Wyman and Hansen 2003", PN_CHOICE, 0, 1, 1, geometries},
     [WIDTH] = {"width", "map units", "how far smoothies reach: by the light's real size, or the same everywhere",
@@ -31,11 +31,14 @@ static const pn_parameter parameters[COUNT] = {
 };
 
 static void preset(int choice, double *values) {
+  for (int i = 0; i < COUNT; i++) values[i] = parameters[i].initial;
   values[PRESET] = choice;
-  values[GEOMETRY] = 1;
-  values[WIDTH] = 0;
-  values[FILTER] = choice != 0;
-  values[REMAP] = values[RECEIVER] = 1;
+  values[FILTER] = choice != 0 && choice != 3; /* fast, paper */
+  if (choice == 3) {
+    values[GEOMETRY] = 0;
+    values[WIDTH] = 0.05; /* the notes have no number */
+    values[RECEIVER] = 0;
+  }
 }
 
 /* Whether the image is the notes' smoothie buffer: what is seen does not depend on the pixel's own distance. */

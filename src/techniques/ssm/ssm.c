@@ -14,7 +14,7 @@ enum { ACCUMULATE_FP32, ACCUMULATE_BATCHED, ACCUMULATE_FP16, ACCUMULATE_CONSECUT
 enum { EXTENTS_GPU, EXTENTS_CPU };
 enum { RECEIVER_LAYERS_MAX = 8 };
 
-static const char *const presets[] = {"fast", "good", "exact", NULL};
+static const char *const presets[] = {"fast", "good", "exact", "paper", NULL};
 static const char *const sides[] = {"both", "front", "back", NULL};
 static const char *const faces[] = {"any", "culled", NULL};
 static const char *const accumulations[] = {"fp32", "fp16-batched", "fp16", "fp16-consecutive", NULL};
@@ -22,7 +22,7 @@ static const char *const extents[] = {"gpu", "cpu", NULL};
 
 static const pn_parameter parameters[COUNT] = {
     [PRESET] = {"preset", "", "sets the others; what is named besides it goes over it", "docs/techniques/ssm.md",
-                PN_CHOICE, 0, 2, 1, presets},
+                PN_CHOICE, 0, 3, 1, presets},
     [SIDES] = {"sides", "", "which surfaces cast: the nearest and the farthest, merged by maximum, or one of them",
                "Soft Shadow Maps, section 3.5", PN_CHOICE, 0, 2, SIDES_BOTH, sides},
     [FACES] = {"faces", "",
@@ -57,6 +57,13 @@ static void preset(int choice, double *values) {
   if (choice == 2) { /* exact */
     values[MERGE] = 1;
     values[LAYERS] = 6;
+  }
+  if (choice == 3) { /* paper */
+    values[FACES] = FACES_CULLED;
+    values[ACCUMULATE] = ACCUMULATE_FP16;
+    values[EXTENTS] = EXTENTS_CPU;
+    values[MERGE] = 0;
+    values[LAYERS] = 1;
   }
 }
 
