@@ -178,8 +178,9 @@ static void check_remap(const remap_case *c, const char *geometry) {
   bool edge_is_nearest = c->sun && c->width > 0; /* b, which counts from that plane, is next to nothing */
   double worst = 0, distances[STEPS] = {0}, seen[STEPS] = {0}, wide[STEPS];
   for (int i = 0; i < SIZE * SIZE; i++) {
+    int shown = view_shown(&scene.v, i % SIZE, i / SIZE), step = shown / 2;
+    if (shown < 0) continue; /* between the steps there may be none */
     vec p = view_point(&scene.v, i % SIZE, i / SIZE);
-    int step = view_shown(&scene.v, i % SIZE, i / SIZE) / 2;
     if (fabs(p.z - 0.3 * (step - 1)) > 0.13) continue;
     double w = w_at(c->sun, p.y), width = penumbra_width(c, w, info.w_near);
     double d = fabs(p.x) * (c->sun ? 1 : w) - half_square * (c->sun ? 1 : w_at(false, h));
@@ -283,6 +284,7 @@ static void check_receiver(const receiver_case *c) {
   double worst[2] = {0, 0};
   int between[2] = {0, 0};
   for (int i = 0; i < SIZE * SIZE; i++) {
+    if (view_shown(&scene.v, i % SIZE, i / SIZE) < 0) continue;
     vec p = view_point(&scene.v, i % SIZE, i / SIZE), r = p;
     int shown = view_shown(&scene.v, i % SIZE, i / SIZE) / 2;
     if (shown > 1 || fabs(p.z) > 0.19 || fabs(p.x) > 1.9) continue;
@@ -329,9 +331,10 @@ static void check_overlap(bool off, const char *spec) {
   float *visibility = stage_visibility(&scene.s, &light, spec);
   int behind = 0, before = 0;
   for (int i = 0; i < SIZE * SIZE; i++) {
+    if (view_shown(&scene.v, i % SIZE, i / SIZE) < 2) continue;
     vec p = view_point(&scene.v, i % SIZE, i / SIZE);
     double s = fabs(p.x) / (L - p.y), margin = 0.004;
-    if (view_shown(&scene.v, i % SIZE, i / SIZE) < 2 || fabs(p.z) > 0.25) continue;
+    if (fabs(p.z) > 0.25) continue;
     if (s < s_upper + margin || s > s_lower + width - margin) continue;
     if (fabs(s - s_lower) < margin || fabs(s - s_upper - width) < margin) continue;
     double alpha = (s - s_upper) / width, w_b = 1 / (L - upper);

@@ -132,6 +132,38 @@ static double check_plate(const char *spec, bool sum_in_16_bits, double *allowed
   return worst;
 }
 
+/* Eq. 4 is of the finest texels: under a light close to a wide plate there are nine tiles, that in the middle the
+ * finest. Light by light, the warning comes where a texel of it hides less than 2^-10, as densities in GLSL's block
+ * have it; for some of the lights the first tile's do not. */
+static void warning_is_of_the_finest_tile(void **state) {
+  (void)state;
+  int between = 0;
+  for (int i = 0; i < 12; i++) {
+    scene c = {0};
+    soup_patch(&c.casters, v3(0, 3, 0), v3(20, 0, 0), v3(0, 0, 20));
+    scene_open(&c, 2.2);
+    double half = 0.2 * pow(1.25, i);
+    pn_light_desc light = light_over_ground(half, half, 64);
+    light.fit = PN_FIT_CASTERS;
+    free(stage_visibility(&c.s, &light, "ssm:accumulate=fp16,sides=front,layers=1,size=16"));
+    const pni_maps *maps = &c.s.light->maps;
+    double finest = INFINITY, first = 0;
+    for (int m = 0; m < maps->fit.tiles; m++) {
+      double area = 1 / ((double)maps->block.maps[m].density[0] * (double)maps->block.maps[m].density[1]);
+      finest = fmin(finest, area);
+      if (m == 0) first = area;
+    }
+    /* The plate is at w = 1, which the map rounds up, the ground at w = 1 / 4. */
+    double depth = maps->fit.w_near - 0.25, hides = 1 / (4 * half * half * depth * depth);
+    assert_true(maps->fit.tiles == 9);
+    if (fabs(finest * hides - 0x1p-10) > 0.02 * 0x1p-10)
+      assert_int_equal(c.s.messages[PN_MESSAGE_ACCUMULATION], finest * hides < 0x1p-10);
+    between += finest * hides < 0x1p-10 && first * hides >= 0x1p-10;
+    over_ground_close(&c);
+  }
+  assert_true(between > 0);
+}
+
 static void parallel_plate_has_its_closed_form(void **state) {
   (void)state;
   static const char *const specs[] = {"ssm",
@@ -647,6 +679,7 @@ static void other_techniques_free_its_memory(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(gpu_and_cpu_lists_agree),
+      cmocka_unit_test(warning_is_of_the_finest_tile),
       cmocka_unit_test(parallel_plate_has_its_closed_form),
       cmocka_unit_test(culled_maps_have_the_faces_of_their_side),
       cmocka_unit_test(sheets_that_look_away_cast_from_the_far_map),

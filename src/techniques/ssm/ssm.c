@@ -178,15 +178,24 @@ static pn_result look_up(const pni_ssm_scattering *s, pni_target target) {
 
 /* ---- precision --------------------------------------------------------------------------------------------------- */
 
+/* Area of a texel of the finest tile: a wide light's meet in angles, so in the middle texels are smaller. */
+static double finest_texel(const pni_job *job) {
+  const pni_fit_result *fit = &job->maps->fit;
+  double least = INFINITY;
+  for (int i = 0; i < fit->tiles; i++) {
+    const double *tile = fit->tile[i];
+    least = fmin(least, (tile[2] - tile[0]) / job->desc->map_width * (tile[3] - tile[1]) / job->desc->map_height);
+  }
+  return least;
+}
+
 /* Appendix A, Eq. 4: beside a sum near 1, 16 bits keep nothing below 2^-10, and the smallest thing a micropatch hides
  * is its area on the light as the farthest receiver sees it. */
 static void warn_of_loss(const pni_job *job, const pni_region *seen) {
   pni_ssm_state *state = job->pair_state;
-  const pni_fit_result *fit = &job->maps->fit;
-  const double *tile = fit->tile[0], *extent = job->emission->extent;
-  double depth = fit->w_near - seen->least[2];
-  double share = (tile[2] - tile[0]) / job->desc->map_width * (tile[3] - tile[1]) / job->desc->map_height /
-                 (4 * extent[0] * extent[1] * depth * depth);
+  const double *extent = job->emission->extent;
+  double depth = job->maps->fit.w_near - seen->least[2];
+  double share = finest_texel(job) / (4 * extent[0] * extent[1] * depth * depth);
   bool loses = share < 0x1p-10;
   if (loses && !state->warned)
     pni_note(job->gpu, PN_LOG_WARNING, PN_MESSAGE_ACCUMULATION,
